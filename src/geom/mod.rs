@@ -1,0 +1,9 @@
+//! Points, rectangles and affine transforms.
+
+mod point;
+mod rect;
+mod transform;
+
+pub use point::Point;
+pub use rect::{IntRect, Rect};
+pub use transform::Transform;

@@ -1,0 +1,75 @@
+//! Small pieces of lane arithmetic that every level rounds alike.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, i32x8, u16x16};
+
+/// ⌊v / 255 + ½⌋ for v in 0 ..= 255·255, per lane, exactly.
+#[inline(always)]
+pub(crate) fn div255_u16<S: Simd>(v: u16x16<S>) -> u16x16<S> {
+    // (v + 128 + ((v + 128) >> 8)) >> 8 equals the rounded quotient on the whole range.
+    let biased = v + 128;
+    (biased + (biased >> 8)) >> 8
+}
+
+/// ⌊v / 255 + ½⌋ for v in 0 ..= 255·255, exactly.
+#[inline(always)]
+pub(crate) fn div255(v: u32) -> u32 {
+    let biased = v + 128;
+    (biased + (biased >> 8)) >> 8
+}
+
+/// The larger lane of two vectors without NaN. `a > b ? a : b` spelled out, since the native maximum
+/// differs between instruction sets on NaN and on zeros of different sign.
+#[inline(always)]
+pub(crate) fn max_f32<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+    a.simd_gt(b).select(a, b)
+}
+
+/// The smaller lane of two vectors without NaN; see [`max_f32`].
+#[inline(always)]
+pub(crate) fn min_f32<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+    a.simd_lt(b).select(a, b)
+}
+
+/// The larger lane of two integer vectors.
+#[inline(always)]
+#[expect(clippy::disallowed_methods, reason = "integer maximum is the same at every level")]
+pub(crate) fn max_i32<S: Simd>(a: i32x8<S>, b: i32x8<S>) -> i32x8<S> {
+    a.max(b)
+}
+
+/// The smaller lane of two integer vectors.
+#[inline(always)]
+#[expect(clippy::disallowed_methods, reason = "integer minimum is the same at every level")]
+pub(crate) fn min_i32<S: Simd>(a: i32x8<S>, b: i32x8<S>) -> i32x8<S> {
+    a.min(b)
+}
+
+/// Truncation toward zero of lanes that are known to lie within ±2^31 (checked in debug builds).
+#[inline(always)]
+#[expect(clippy::disallowed_methods, reason = "in range, every level truncates alike")]
+pub(crate) fn truncate_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
+    debug_assert!(v.to_array().iter().all(|lane| lane.abs() < 2_147_483_648.0), "lane outside i32");
+    v.to_int()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+
+    #[test]
+    fn div255_rounds_to_nearest_on_its_whole_range() {
+        for v in 0..=255 * 255_u32 {
+            assert_eq!(div255(v), (2 * v + 255) / 510, "{v}");
+        }
+        for level in SimdLevel::available() {
+            dispatch!(level, simd => {
+                for v in 0..=65_025_u16 {
+                    let lanes = div255_u16(u16x16::splat(simd, v)).to_array();
+                    assert_eq!(u32::from(lanes[7]), div255(u32::from(v)), "{v} at {level:?}");
+                }
+            });
+        }
+    }
+}

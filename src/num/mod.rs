@@ -1,0 +1,5 @@
+//! Numbers: fixed point, reproducible trigonometry, SIMD lanes and levels.
+
+pub(crate) mod lanes;
+pub(crate) mod level;
+pub(crate) mod trig;

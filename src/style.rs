@@ -1,0 +1,29 @@
+//! The choices of a drawing call that say how an outline becomes coverage.
+
+/// Which points a self-crossing or nested outline encloses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FillRule {
+    /// Those around which the outline's windings do not add up to zero.
+    #[default]
+    NonZero,
+    /// Those from which a ray crosses the outline an odd number of times.
+    EvenOdd,
+}
+
+/// How partly covered pixels are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Antialias {
+    /// The exact area that the outline covers of the pixel, from signed areas: exact for every pixel
+    /// that one outline passes through; where edges cross inside a pixel, the sum of their areas
+    /// stands for the union. The default.
+    #[default]
+    Analytic,
+    /// As [`Antialias::Analytic`], and pixels in which edges cross are resolved by the fill rule.
+    Exact,
+    /// n × n samples a pixel on a regular grid, n in 1 ..= 16 (others are clamped). 4 is
+    /// tiny-skia's own sampling.
+    Supersample(u8),
+    /// A pixel is covered where its centre is inside; a centre on the outline belongs to the pixel to
+    /// the right of or below the edge. Strokes of width 0 are Bresenham lines.
+    None,
+}
