@@ -75,6 +75,11 @@ impl Pixmap {
         Self::with_limits(width, height, Limits::default())
     }
 
+    /// One transparent pixel: what is left where a picture was moved out.
+    pub(crate) fn placeholder() -> Self {
+        Self { width: 1, height: 1, data: vec![0; 4] }
+    }
+
     /// A transparent picture of a size checked against `limits`.
     ///
     /// # Errors
@@ -274,6 +279,11 @@ impl<'a> PixmapMut<'a> {
     /// Rows.
     pub fn height(&self) -> u32 {
         self.height
+    }
+
+    /// The same view, for a shorter time.
+    pub fn reborrow(&mut self) -> PixmapMut<'_> {
+        PixmapMut { width: self.width, height: self.height, stride: self.stride, data: self.data }
     }
 
     /// Bytes from one row to the next.
