@@ -7,6 +7,7 @@ mod geom;
 mod num;
 mod paint;
 mod path;
+pub mod raster;
 mod style;
 mod surface;
 
