@@ -1,18 +1,24 @@
 //! A CPU canvas for 2D and 3D.
 
 mod blend;
+mod canvas;
 mod color;
+mod display_list;
 mod error;
+mod filter;
 mod geom;
 mod num;
 mod paint;
 mod path;
 pub mod raster;
+mod render;
 mod style;
 mod surface;
 
 pub use blend::BlendMode;
+pub use canvas::{Canvas, SaveGuard, Shadow};
 pub use color::Color;
+pub use display_list::{ImagePaint, Paint};
 pub use error::{Error, Result};
 pub use geom::{IntRect, Point, Rect, Transform};
 pub use glam;
@@ -21,5 +27,6 @@ pub use paint::{
     FilterQuality, GradientStop, LinearGradient, Pattern, RadialGradient, Shader, SpreadMode, SweepGradient,
 };
 pub use path::{Dash, LineCap, LineJoin, Path, Segment, Stroke, Verb};
+pub use render::RenderSettings;
 pub use style::{Antialias, FillRule};
 pub use surface::{Limits, Mask, MaskKind, Pixmap, PixmapMut, PixmapRef};

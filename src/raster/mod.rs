@@ -15,8 +15,13 @@
 //! assert_eq!(grid, [*b"##......", *b"..####..", *b"......##"]);
 //! ```
 
+pub(crate) mod cell;
 pub mod circle;
+pub(crate) mod edge;
+pub(crate) mod exact;
 pub mod line;
 pub mod polygon;
+pub(crate) mod sample;
 mod stair;
+pub(crate) mod sweep;
 pub mod triangulate;
