@@ -6,6 +6,7 @@ mod dash;
 pub(crate) mod flatten;
 mod hit;
 mod measure;
+mod outline;
 mod shapes;
 pub(crate) mod stroke;
 mod stroke_style;
