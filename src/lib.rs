@@ -26,7 +26,7 @@ pub use num::level::SimdLevel;
 pub use paint::{
     FilterQuality, GradientStop, LinearGradient, Pattern, RadialGradient, Shader, SpreadMode, SweepGradient,
 };
-pub use path::{Dash, LineCap, LineJoin, Path, Segment, Stroke, Verb};
+pub use path::{Dash, LineCap, LineJoin, Path, Radii, Segment, Stroke, Verb};
 pub use render::RenderSettings;
 pub use style::{Antialias, FillRule};
 pub use surface::{Limits, Mask, MaskKind, Pixmap, PixmapMut, PixmapRef};

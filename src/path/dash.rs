@@ -6,7 +6,8 @@
 
 use super::curve::Cubic;
 use super::flatten::PolygonSink;
-use super::stroke::{Job, Outliner, PointMap, Subpath};
+use super::outline::{Outliner, PointMap};
+use super::stroke::{Job, Subpath};
 use super::{Dash, Segment};
 use crate::geom::{Point, Rect};
 
@@ -550,5 +551,230 @@ impl Measured for Curve {
         let piece = if t0 == 0.0 && t1 == 1.0 { self.cubic } else { self.cubic.piece(t0, t1) };
         let [_, c1, c2, p] = piece.points().map(|p| walker.before.map_point(p));
         walker.draw(Segment::CubicTo(c1, c2, p));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::geom::{Point, Rect, Transform};
+    use crate::path::flatten::PolygonSink;
+    use crate::path::stroke::{StrokeScratch, stroke};
+    use crate::path::{LineCap, LineJoin, Path, Stroke};
+
+    /// Collects polygons.
+    #[derive(Default)]
+    struct Polygons(Vec<Vec<Point>>);
+
+    impl PolygonSink for Polygons {
+        fn begin(&mut self, p: Point) {
+            self.0.push(vec![p]);
+        }
+        fn line(&mut self, p: Point) {
+            self.0.last_mut().unwrap().push(p);
+        }
+        fn end(&mut self) {}
+    }
+
+    const SCREEN: Rect = Rect::from_ltrb(0.0, 0.0, 1000.0, 1000.0);
+
+    fn draw_mapped(path: &Path, style: &Stroke, transform: Transform) -> Vec<Vec<Point>> {
+        let mut sink = Polygons::default();
+        let mut scratch = StrokeScratch::default();
+        stroke(path.verbs(), path.points(), style, transform, 0.05, SCREEN, &mut scratch, &mut sink);
+        sink.0
+    }
+
+    fn draw(path: &Path, style: &Stroke) -> Vec<Vec<Point>> {
+        draw_mapped(path, style, Transform::IDENTITY)
+    }
+
+    fn line(x0: f32, x1: f32) -> Path {
+        let mut path = Path::new();
+        path.move_to((x0, 10.0)).line_to((x1, 10.0));
+        path
+    }
+
+    /// From where to where each polygon reaches in x, in order.
+    fn spans(polygons: &[Vec<Point>]) -> Vec<(f32, f32)> {
+        let mut spans: Vec<_> = polygons
+            .iter()
+            .map(|polygon| {
+                let bounds = Rect::from_points(polygon).unwrap();
+                (bounds.left, bounds.right)
+            })
+            .collect();
+        spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+        spans
+    }
+
+    fn area(polygon: &[Point]) -> f32 {
+        let next = polygon.iter().cycle().skip(1);
+        polygon.iter().zip(next).map(|(a, b)| a.cross(*b)).sum::<f32>() * 0.5
+    }
+
+    #[test]
+    fn dashes_lie_where_the_pattern_puts_them() {
+        let cases: [(&[f32], f32, &[(f32, f32)]); 8] = [
+            (&[3.0, 2.0], 0.0, &[(0.0, 3.0), (5.0, 8.0), (10.0, 12.0)]),
+            (&[3.0, 2.0], 1.0, &[(0.0, 2.0), (4.0, 7.0), (9.0, 12.0)]),
+            (&[3.0, 2.0], 4.0, &[(1.0, 4.0), (6.0, 9.0), (11.0, 12.0)]),
+            (&[3.0, 2.0], -1.0, &[(1.0, 4.0), (6.0, 9.0), (11.0, 12.0)]),
+            (&[3.0, 2.0], 5_000.0, &[(0.0, 3.0), (5.0, 8.0), (10.0, 12.0)]),
+            // An odd pattern is 1 on, 2 off, 3 on, 1 off, 2 on, 3 off.
+            (&[1.0, 2.0, 3.0], 0.0, &[(0.0, 1.0), (3.0, 6.0), (7.0, 9.0)]),
+            (&[4.0], 0.0, &[(0.0, 4.0), (8.0, 12.0)]),
+            // A gap without length is none.
+            (&[3.0, 0.0, 1.0, 2.0], 0.0, &[(0.0, 4.0), (6.0, 10.0)]),
+        ];
+        for (pattern, offset, expected) in cases {
+            let got = spans(&draw(&line(0.0, 12.0), &Stroke::new(2.0).with_dash(pattern, offset)));
+            assert_eq!(got, expected, "{pattern:?} {offset}");
+        }
+    }
+
+    #[test]
+    fn senseless_patterns_are_solid() {
+        let patterns: [&[f32]; 6] = [&[], &[0.0], &[0.0, 0.0], &[3.0, -1.0], &[f32::NAN, 1.0], &[f32::INFINITY, 1.0]];
+        for pattern in patterns {
+            let got = spans(&draw(&line(0.0, 12.0), &Stroke::new(2.0).with_dash(pattern, 0.0)));
+            assert_eq!(got, [(0.0, 12.0)], "{pattern:?}");
+        }
+        let odd_offset = Stroke::new(2.0).with_dash([8.0, 8.0], f32::NAN);
+        assert_eq!(spans(&draw(&line(0.0, 12.0), &odd_offset)), [(0.0, 8.0)]);
+    }
+
+    #[test]
+    fn dashes_without_length_are_dots_along_the_path() {
+        let mut path = Path::new();
+        path.move_to((100.0, 100.0)).line_to((130.0, 140.0));
+        let style = Stroke::new(2.0).with_dash([0.0, 20.0], 10.0);
+        assert!(draw(&path, &style).is_empty());
+        let squares = draw(&path, &style.clone().with_cap(LineCap::Square));
+        // At 10 and 30 of 50: centres on the line, sides along (3, 4) / 5.
+        assert_eq!(squares.len(), 2);
+        for (square, center) in squares.iter().zip([(106.0, 108.0), (118.0, 124.0)]) {
+            let corners = [(0.2, -1.4), (1.4, 0.2), (-0.2, 1.4), (-1.4, -0.2)];
+            assert_eq!(square.len(), 4);
+            for (x, y) in corners {
+                let corner = Point::new(center.0 + x, center.1 + y);
+                assert!(square.iter().any(|p| (*p - corner).length() < 1e-4), "{square:?} lacks {corner:?}");
+            }
+        }
+        let discs = draw(&path, &style.with_cap(LineCap::Round));
+        assert_eq!(discs.len(), 2);
+        let bounds = Rect::from_points(&discs[1]).unwrap();
+        assert!((bounds.center() - Point::new(118.0, 124.0)).length() < 0.1, "{bounds:?}");
+    }
+
+    #[test]
+    fn a_closed_subpaths_last_dash_runs_into_its_first() {
+        let mut square = Path::new();
+        square.rect(Rect::from_ltrb(100.0, 100.0, 110.0, 110.0));
+        // 40 around; on 0 to 5, 10 to 15, …: with offset 2, on −2 to 3 around the first corner.
+        let style = Stroke::new(2.0).with_dash([5.0, 5.0], 2.0);
+        let dashes = draw(&square, &style);
+        assert_eq!(dashes.len(), 4);
+        let corner = dashes.iter().find(|dash| dash.iter().any(|p| *p == Point::new(99.0, 99.0))).unwrap();
+        let bounds = Rect::from_points(corner).unwrap();
+        assert_eq!(bounds, Rect::from_ltrb(99.0, 99.0, 103.0, 102.0));
+        // Open, the two halves have caps of their own.
+        let mut open = Path::new();
+        open.polyline(
+            &[(100.0, 100.0), (110.0, 100.0), (110.0, 110.0), (100.0, 110.0), (100.0, 100.0)].map(Point::from),
+        );
+        assert_eq!(draw(&open, &style).len(), 5);
+        // A dash longer than the way around closes it.
+        let whole = draw(&square, &Stroke::new(2.0).with_dash([100.0, 1.0], 0.0));
+        assert_eq!(whole, draw(&square, &Stroke::new(2.0)));
+    }
+
+    #[test]
+    fn dashes_turn_corners_with_their_joins() {
+        let mut path = Path::new();
+        path.polyline(&[(100.0, 100.0), (110.0, 100.0), (110.0, 110.0)].map(Point::from));
+        let dashes = draw(&path, &Stroke::new(2.0).with_dash([4.0, 4.0], 0.0));
+        assert_eq!(dashes.len(), 3);
+        let corner = [(108.0, 99.0), (111.0, 99.0), (111.0, 102.0), (109.0, 102.0), (109.0, 101.0), (108.0, 101.0)];
+        assert!(dashes.contains(&corner.map(Point::from).to_vec()), "{dashes:?}");
+    }
+
+    #[test]
+    fn dashes_on_a_circle_have_the_area_of_ring_sectors() {
+        // Circumference 2π·50; sixteenths of it, on and off. A sector of a ring of width 4 on the circle has
+        // area length · 4.
+        let sixteenth = std::f32::consts::PI * 100.0 / 16.0;
+        let mut path = Path::new();
+        path.circle((200.0, 200.0), 50.0);
+        let style = Stroke::new(4.0).with_dash([sixteenth, sixteenth], 0.0);
+        for (transform, scale) in [(Transform::IDENTITY, 1.0), (Transform::from_scale(3.0, 0.5), 1.5)] {
+            let dashes = draw_mapped(&path, &style, transform);
+            assert_eq!(dashes.len(), 8);
+            for dash in &dashes {
+                let error = area(dash) / (sixteenth * 4.0 * scale) - 1.0;
+                assert!(error.abs() < 0.01, "{error}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_sight_only_moves_the_pattern() {
+        // 7 × 142,857,142 = 999,999,994: the pattern starts anew 6 before the origin.
+        let style = Stroke::new(2.0).with_dash([3.0, 4.0], 0.0);
+        let mut path = Path::new();
+        path.move_to((-1e9, 10.0)).line_to((1e9, 10.0));
+        let spans = spans(&draw(&path, &style));
+        assert!((140..150).contains(&spans.len()), "{}", spans.len());
+        for (left, right) in spans {
+            // The first and the last may be cut where they no longer show.
+            if left > 0.0 && right < 1000.0 {
+                assert!(((left + 6.0) % 7.0).abs() < 0.01 && (right - left - 3.0).abs() < 0.01, "{left} {right}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_sight_changes_nothing_in_sight() {
+        let mut path = Path::new();
+        path.move_to((-300.0, 200.0)).cubic_to((400.0, -900.0), (700.0, 1900.0), (1400.0, 300.0));
+        path.line_to((1400.0, 500.0)).line_to((-50.0, 700.0)).quad_to((-900.0, 900.0), (300.0, 900.0));
+        let styles = [LineCap::Butt, LineCap::Round]
+            .map(|cap| Stroke::new(9.0).with_cap(cap).with_join(LineJoin::Round).with_dash([31.0, 17.0, 4.0], 11.0));
+        for style in styles {
+            let part = draw(&path, &style);
+            let whole = path.stroked(&style, 0.05);
+            let mut culled = Path::new();
+            part.iter().for_each(|polygon| drop(culled.polygon(polygon)));
+            assert!(culled.verbs().len() < whole.verbs().len());
+            let (mut inside, mut different) = (0, 0);
+            for i in 0..250_u16 {
+                for j in 0..250_u16 {
+                    let p = Point::new(f32::from(i) * 4.0 + 1.7, f32::from(j) * 4.0 + 2.3);
+                    let rule = crate::style::FillRule::NonZero;
+                    let on = whole.contains(p, rule);
+                    inside += u32::from(on);
+                    different += u32::from(culled.contains(p, rule) != on);
+                }
+            }
+            // Where a step of a curve begins depends on where its piece does: within the tolerance.
+            assert!(inside > 500 && different < 10, "{inside} {different}");
+        }
+    }
+
+    #[test]
+    fn patterns_too_fine_to_draw_are_solid_and_large_ones_are_quick() {
+        let solid = draw(&line(0.0, 500.0), &Stroke::new(2.0).with_dash([1e-9, 1e-9], 0.0));
+        assert_eq!(spans(&solid), [(0.0, 500.0)]);
+        let million: Vec<f32> = vec![1e-3; 1_000_000];
+        assert_eq!(draw(&line(0.0, 100.0), &Stroke::new(2.0).with_dash(million, 0.0)).len(), 50_000);
+        // Lengthless dots a million times in one place.
+        let mut dots = vec![0.0_f32; 1_000_000];
+        dots[999_999] = 0.5;
+        dots[500_001] = 0.5;
+        let drawn = draw(&line(0.0, 500.0), &Stroke::new(2.0).with_cap(LineCap::Round).with_dash(dots, 0.0));
+        assert_eq!(drawn.len(), 1);
+        let mut spiral = Path::new();
+        spiral.move_to((-1e9, 0.0)).cubic_to((1e9, 2e9), (1e9, -2e9), (-1e9, 1000.0)).close();
+        let drawn = draw(&spiral, &Stroke::new(2.0).with_dash([3.0, 4.0], 0.0));
+        assert!(drawn.len() < 10_000, "{}", drawn.len());
     }
 }

@@ -4,8 +4,15 @@ mod builder;
 mod curve;
 mod dash;
 pub(crate) mod flatten;
+mod hit;
+mod measure;
+mod outline;
+mod shapes;
 pub(crate) mod stroke;
 mod stroke_style;
+#[cfg(feature = "svg")]
+mod svg_data;
 
 pub use builder::{Path, Segment, Verb};
+pub use shapes::Radii;
 pub use stroke_style::{Dash, LineCap, LineJoin, Stroke};
