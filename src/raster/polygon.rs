@@ -541,6 +541,37 @@ mod tests {
     }
 
     #[test]
+    fn a_shared_edge_of_any_size_is_cut_off_alike() {
+        // By the even-odd rule a quadrilateral is what just one of its two triangles covers.
+        let mut seed = 7_u64;
+        let mut coordinate = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            // 2^−4 to 2^127, so that most corners lie beyond the limit.
+            let exponent = 123 + (seed >> 40) as u32 % 131;
+            f32::from_bits((seed >> 63 << 31) as u32 | exponent << 23 | (seed >> 33) as u32 & 0x7f_ffff)
+        };
+        let clip = IntRect::from_ltrb(-20, -20, 20, 20);
+        let cover = |corners: &[Point]| {
+            let mut rows = [0_u64; 40];
+            fill(corners, FillRule::EvenOdd, clip, |y, xs| {
+                xs.for_each(|x| rows[(y + 20) as usize] |= 1 << (x + 20));
+            });
+            rows
+        };
+        let mut partly = 0;
+        for _ in 0..5000 {
+            let [a, b, c, d] = [(); 4].map(|()| Point::new(coordinate(), coordinate()));
+            let (first, second, both) = (cover(&[a, b, c]), cover(&[a, c, d]), cover(&[a, b, c, d]));
+            for row in 0..40 {
+                assert_eq!(first[row] ^ second[row], both[row], "{a:?} {b:?} {c:?} {d:?}");
+            }
+            let count: u32 = both.iter().map(|row| row.count_ones()).sum();
+            partly += u32::from(count > 0 && count < 1600);
+        }
+        assert!(partly > 100, "only {partly} outlines pass through the clip");
+    }
+
+    #[test]
     fn what_is_not_finite_has_no_pixel() {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             for i in 0..3 {
