@@ -46,12 +46,13 @@ pub fn supercover(from: (i32, i32), to: (i32, i32)) -> Band {
 /// pixels beyond the ends of `i32` are left out.
 pub fn wide(from: (i32, i32), to: (i32, i32), width: u32) -> Band {
     let frame = Frame::new(from, to);
-    if width == 0 {
-        return Band::new(frame, frame.center_stair(0), frame.center_stair(0), 1..=0);
-    }
-    let (less, more) = (i64::from((width - 1) / 2), i64::from(width / 2));
+    let (less, more) = (i64::from(width.saturating_sub(1) / 2), i64::from(width / 2));
     let (before, after) = if frame.minor_sign > 0 { (less, more) } else { (more, less) };
-    Band::new(frame, frame.center_stair(-before), frame.center_stair(after), i64::MIN..=i64::MAX)
+    let mut band = Band::new(frame, frame.center_stair(-before), frame.center_stair(after), i64::MIN..=i64::MAX);
+    if width == 0 {
+        band.end = 0;
+    }
+    band
 }
 
 /// The pixels of the open polyline through `points`, each joint once.
@@ -328,7 +329,7 @@ pub struct Band {
 impl Band {
     fn new(frame: Frame, low: Stair, high: Stair, levels: RangeInclusive<i64>) -> Self {
         let (floor, ceiling) = (*levels.start(), *levels.end());
-        let end = if floor <= ceiling { frame.run + 1 } else { 0 };
+        let end = frame.run + 1;
         let mut band = Self { frame, low, high, step: 0, end, floor, ceiling, level: 0, last_level: -1 };
         band.start_run();
         band.restrict(PixelBox::ALL)

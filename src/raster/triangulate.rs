@@ -45,8 +45,10 @@ struct Ring {
     next: Vec<u32>,
     previous: Vec<u32>,
     present: Vec<bool>,
-    /// The corners that were concave at the start, by x: only those can lie in an ear.
+    /// The corners that were concave, in order of x: only those can lie in an ear.
     concave: Vec<u32>,
+    /// At how many corners left `concave` is swept of those gone or convex by now.
+    next_sweep: usize,
     remaining: usize,
     triangles: Vec<[u32; 3]>,
 }
@@ -56,6 +58,7 @@ impl Ring {
     fn new(points: &[Point]) -> Option<Self> {
         let count = u32::try_from(points.len()).ok().filter(|&count| count >= 3)?;
         let mut corners = to_grid(points)?;
+        turn_lengthways(&mut corners);
         let origin = *corners.first()?;
         let area: i128 = corners.windows(2).map(|pair| cross(origin, pair[0], pair[1])).sum();
         match area.cmp(&0) {
@@ -69,6 +72,7 @@ impl Ring {
             previous: [count - 1].into_iter().chain(0..count - 1).collect(),
             present: vec![true; points.len()],
             concave: Vec::new(),
+            next_sweep: points.len() / 2,
             remaining: points.len(),
             triangles: Vec::with_capacity(points.len() - 2),
         };
@@ -155,7 +159,24 @@ impl Ring {
         self.previous[after as usize] = before;
         self.present[i as usize] = false;
         self.remaining -= 1;
+        if self.remaining < self.next_sweep {
+            self.next_sweep = self.remaining / 2;
+            let mut concave = std::mem::take(&mut self.concave);
+            concave.retain(|&j| self.present[j as usize] && self.turn(j) <= 0);
+            self.concave = concave;
+        }
         queue.extend([before, after]);
+    }
+}
+
+/// Turns corners that lie in an upright box by 90°, so that few of them share a piece of the x axis.
+fn turn_lengthways(corners: &mut [Corner]) {
+    let extent = |of: fn(&Corner) -> i64| {
+        let (low, high) = corners.iter().map(of).fold((i64::MAX, i64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+        high.saturating_sub(low)
+    };
+    if extent(|corner| corner.y) > extent(|corner| corner.x) {
+        corners.iter_mut().for_each(|corner| *corner = Corner { x: corner.y, y: -corner.x });
     }
 }
 
