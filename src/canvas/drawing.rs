@@ -165,8 +165,9 @@ impl Canvas<'_> {
     pub(super) fn draw(
         &mut self,
         paint: Paint,
-        mut geometry: impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>,
+        geometry: impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>,
     ) {
+        let mut geometry = geometry;
         if self.state.bounds.is_empty() || paint.blend_mode == BlendMode::Destination {
             return;
         }
@@ -200,7 +201,7 @@ impl Canvas<'_> {
         &mut self,
         shadow: super::Shadow,
         paint: &Paint,
-        geometry: &mut impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>,
+        geometry: &mut dyn FnMut(&mut Self) -> Option<(Geometry, IntRect)>,
     ) {
         let finite = shadow.offset_x.is_finite() && shadow.offset_y.is_finite() && shadow.deviation.is_finite();
         if !finite || shadow.color.a <= 0.0 || shadow.color.a.is_nan() {
@@ -237,7 +238,7 @@ impl Canvas<'_> {
             self.state.transform = outer.transform.post_concat(shift);
             self.state.bounds = IntRect::from_xywh(0, 0, region.width(), region.height());
             let plain = Paint { blend_mode: BlendMode::SourceOver, ..paint.clone() };
-            self.draw(plain, &mut *geometry);
+            self.draw(plain, |canvas: &mut Self| geometry(canvas));
         }
         let list = std::mem::replace(&mut self.list, outer_list);
         self.state = outer;

@@ -15,7 +15,7 @@ use crate::geom::{Point, Rect};
 const MOST_INTERVALS: f64 = 1_000_000.0;
 
 /// Memory that dashing reuses.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct DashScratch {
     /// Where each interval of the pattern ends.
     ends: Vec<f64>,

@@ -19,7 +19,7 @@ use crate::geom::{Point, Rect, Transform};
 const FARTHEST: f32 = 1e37;
 
 /// Memory that strokes reuse; after the first few strokes nothing more is allocated.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct StrokeScratch {
     /// The right contour of the subpath in work, in device pixels.
     right: Vec<Point>,

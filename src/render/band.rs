@@ -178,10 +178,18 @@ fn paint_draw<S: Simd>(
     clip_for(simd, frame, scratch, draw.clip);
     let rule = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, edges);
     let BandScratch { cells, layers, clips, .. } = scratch;
-    let mut layer = layers.last_mut().map(|layer| layer.surface(frame.rows));
-    let surface = layer.as_mut().unwrap_or(target);
+    let surface = &mut open_surface(frame, target, layers);
     let clip = clips.current(draw.clip);
     paint_cells(simd, frame, cells, rule, Look { source, blend_mode: draw.blend_mode, opacity: 255, clip }, surface);
+}
+
+/// The rows to draw on: those of the innermost open layer, or the target's.
+#[inline(always)]
+fn open_surface<'a>(frame: &Frame<'_>, target: &'a mut Surface<'_>, layers: &'a mut [LayerBuffer]) -> Surface<'a> {
+    match layers.last_mut() {
+        Some(layer) => layer.surface(frame.rows),
+        None => target.reborrow(),
+    }
 }
 
 /// Draws a finished layer onto the one below, or onto the target.
@@ -198,8 +206,7 @@ fn paint_layer<S: Simd>(
     clip_for(simd, frame, scratch, layer.clip);
     let rule = accumulate(simd, frame, scratch, &Geometry::Bounds, Antialias::Analytic, edges);
     let BandScratch { cells, layers, clips, .. } = scratch;
-    let mut below = layers.last_mut().map(|layer| layer.surface(frame.rows));
-    let surface = below.as_mut().unwrap_or(target);
+    let surface = &mut open_surface(frame, target, layers);
     let source = Source::Layer(pixels.surface(frame.rows));
     let clip = clips.current(layer.clip);
     let look = Look { source, blend_mode: layer.blend_mode, opacity: layer.opacity, clip };
@@ -540,6 +547,7 @@ impl Painter<'_, '_, '_> {
                 continue;
             }
             let (blocks, tail) = slice.as_chunks_mut::<ROW_BYTES>();
+            let last = start + blocks.len();
             for pixels in blocks {
                 if coverage == 255 {
                     over_solid_full(simd, pixels, color);
@@ -548,7 +556,6 @@ impl Painter<'_, '_, '_> {
                 }
             }
             if !tail.is_empty() {
-                let last = start + blocks.len();
                 self.surface.with_row(row, last, #[inline(always)] |pixels| {
                     over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
                 });
