@@ -29,7 +29,7 @@ impl<S: Simd> Operands<S> {
     /// 0: nothing of either.
     #[inline(always)]
     pub(super) fn nothing(self) -> u16x16<S> {
-        self.s ^ self.s
+        u16x16::splat(self.s.simd, 0)
     }
 
     /// The source outside the destination: s·(255 − da).
@@ -68,11 +68,11 @@ pub(super) fn composite<S: Simd>(
         mask,
         #[inline(always)]
         |dst, src| {
-            let colour = u16x16::splat(simd, 0);
+            let color = u16x16::splat(simd, 0);
             let alpha: u16x16<S> = u32x8::splat(simd, 0xffff_0000).bitcast();
             let ((d, da), (s, sa)) = (clamped(dst), clamped(src));
             Words {
-                even: div255(formula(Operands { s: s.even, d: d.even, sa, da, is_alpha: colour })),
+                even: div255(formula(Operands { s: s.even, d: d.even, sa, da, is_alpha: color })),
                 odd: div255(formula(Operands { s: s.odd, d: d.odd, sa, da, is_alpha: alpha })),
             }
         },

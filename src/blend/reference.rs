@@ -70,7 +70,7 @@ fn reference_is_right(mode: BlendMode, d: &[u8], s: &[u8]) -> bool {
     let pixel = |p: &[u8]| unit([p[0], p[1], p[2], p[3]]);
     let color = unclipped(mode, pixel(d), pixel(s));
     let (low, high) = color.into_iter().fold((1.0, 0.0), |(low, high), v| (v.min(low), v.max(high)));
-    low > -0.001 && high - low > 0.001
+    low > -1e-7 && high - low > 0.001
 }
 
 /// 65,536 random sources on as many destinations, through tiny-skia's `f32` pipeline (it has no other for
@@ -97,7 +97,8 @@ fn images_agree_with_tiny_skia() {
     }
 }
 
-/// One colour goes through tiny-skia's 16-bit pipeline, which divides by 255 as (v + 255) >> 8.
+/// One colour goes through tiny-skia's 16-bit pipeline, which divides by 255 as (v + 255) >> 8 and so is
+/// up to 1 high.
 #[test]
 fn colours_agree_with_tiny_skia() {
     let mut random = Random(0x00c0_1047);
@@ -109,15 +110,17 @@ fn colours_agree_with_tiny_skia() {
         let source = [source.red(), source.green(), source.blue(), source.alpha()];
         let src: Vec<u8> = source.into_iter().cycle().take(dst.len()).collect();
         for (mode, theirs) in MODES {
-            // tiny-skia's own arithmetic overflows in these two, which a build with checks does not survive.
-            if matches!(mode, Overlay | HardLight) {
-                continue;
-            }
-            // That quotient is up to 1 high; where a formula doubles it or takes the sum of two, 2.
-            let limit = if INTEGER.contains(&mode) { 2 } else { 3 };
-            let counts = |i: usize| reference_is_right(mode, &dst[4 * i..4 * i + 4], &source);
-            let theirs = draw(theirs, &dst, tiny_skia::Shader::SolidColor(color), 1.0);
-            let (worst, _) = compare(&ours(mode, &dst, &src, 255), &theirs, counts);
+            let limit = match mode {
+                // tiny-skia's own arithmetic overflows in these two, which a build with checks does not survive.
+                Overlay | HardLight => continue,
+                // It has no 16-bit version of these; its `f32` one does not round the colour to bytes first.
+                _ if !INTEGER.contains(&mode) => continue,
+                // It doubles its quotient.
+                Difference | Exclusion => 2,
+                _ => 1,
+            };
+            let theirs = draw(theirs, &dst, Shader::SolidColor(color), 1.0);
+            let (worst, _) = compare(&ours(mode, &dst, &src, 255), &theirs, |_| true);
             assert!(worst <= limit, "{mode}: {worst} off with {source:?}");
         }
     }
