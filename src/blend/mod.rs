@@ -4,6 +4,8 @@ mod layer;
 mod non_separable;
 mod over;
 mod porter_duff;
+#[cfg(test)]
+mod reference;
 mod separable;
 #[cfg(test)]
 mod specification;
@@ -13,8 +15,6 @@ use std::fmt;
 use std::str::FromStr;
 
 use fearless_simd::Simd;
-use fearless_simd::prelude::*;
-use fearless_simd::u16x16;
 
 use crate::error::{Error, Result};
 use crate::surface::block::{MaskBlock, PixelBlock};
@@ -22,6 +22,8 @@ pub(crate) use layer::{multiply_block_by_mask, multiply_row_by_mask, scale_mask_
 pub(crate) use over::{
     mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row, over_solid_full, over_solid_row,
 };
+use porter_duff::{Operands, composite};
+use separable::{composite_components, composite_planes};
 
 /// How a source colour meets what is drawn already.
 ///
@@ -262,10 +264,12 @@ impl FromStr for BlendMode {
 /// Composites the pixels of `src` onto `dst` by `mode` where `mask` says, as [`BlendMode`] defines.
 ///
 /// Mask 255 gives exactly the blended pixel, rounded; mask 0 leaves the destination's bytes; between, the
-/// two are mixed and rounded again, at most 1 off in all. Two modes scale the source by the mask instead,
-/// which is the same but for rounding in source-over, the fast one, and not the same in `Plus`, whose
-/// clamp must come last. (So it is in every mode from `Screen` on and in half of the others; but the
-/// rounded source then enters a product, and the errors were measured to be larger.)
+/// two are mixed and rounded again, at most 1 off in all.
+///
+/// Two modes scale the source by the mask instead: source-over, for speed (see [`over_pixels_row`]), and
+/// `Plus`, whose clamp must come last. Up to rounding, mixing and scaling are the same in all modes but
+/// `Clear`, `Source`, `SourceIn`, `SourceOut`, `DestinationIn`, `DestinationAtop`, `Modulate` and `Plus`;
+/// mixing is preferred since a source rounded before it enters a product can be 1½ off.
 #[inline(always)]
 pub(crate) fn composite_block<S: Simd>(
     simd: S,
@@ -274,6 +278,44 @@ pub(crate) fn composite_block<S: Simd>(
     src: &PixelBlock,
     mask: &MaskBlock,
 ) {
+    // Every formula goes into a closure that must be inlined: a function handed over as such is called
+    // through a shim that lacks the level's instructions, which made these modes ten times slower.
+    macro_rules! words {
+        ($formula:path) => {
+            composite(
+                simd,
+                dst,
+                src,
+                mask,
+                #[inline(always)]
+                |operands| $formula(operands),
+            )
+        };
+    }
+    macro_rules! components {
+        ($formula:path) => {
+            composite_components(
+                simd,
+                dst,
+                src,
+                mask,
+                #[inline(always)]
+                |component| $formula(component),
+            )
+        };
+    }
+    macro_rules! planes {
+        ($formula:path) => {
+            composite_planes(
+                simd,
+                dst,
+                src,
+                mask,
+                #[inline(always)]
+                |d, s| $formula(d, s),
+            )
+        };
+    }
     match mode {
         BlendMode::Destination => {}
         BlendMode::SourceOver => {
@@ -281,64 +323,38 @@ pub(crate) fn composite_block<S: Simd>(
                 over_pixels_row(simd, dst, src, mask);
             }
         }
-        _ => composite_rare(simd, mode, dst, src, mask),
+        BlendMode::Source => {
+            for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
+                mix_pixels_row(simd, dst, src, mask);
+            }
+        }
+        BlendMode::Clear => words!(Operands::nothing),
+        BlendMode::Plus => porter_duff::plus(simd, dst, src, mask),
+        BlendMode::DestinationOver => words!(porter_duff::destination_over),
+        BlendMode::SourceIn => words!(porter_duff::source_in),
+        BlendMode::DestinationIn => words!(porter_duff::destination_in),
+        BlendMode::SourceOut => words!(Operands::source_outside),
+        BlendMode::DestinationOut => words!(Operands::destination_outside),
+        BlendMode::SourceAtop => words!(porter_duff::source_atop),
+        BlendMode::DestinationAtop => words!(porter_duff::destination_atop),
+        BlendMode::Xor => words!(Operands::outside),
+        BlendMode::Modulate => words!(porter_duff::modulate),
+        BlendMode::Multiply => words!(separable::multiply),
+        BlendMode::Screen => words!(separable::screen),
+        BlendMode::Overlay => words!(separable::overlay),
+        BlendMode::Darken => words!(separable::darken),
+        BlendMode::Lighten => words!(separable::lighten),
+        BlendMode::HardLight => words!(separable::hard_light),
+        BlendMode::Difference => words!(separable::difference),
+        BlendMode::Exclusion => words!(separable::exclusion),
+        BlendMode::ColorDodge => components!(separable::color_dodge),
+        BlendMode::ColorBurn => components!(separable::color_burn),
+        BlendMode::SoftLight => components!(separable::soft_light),
+        BlendMode::Hue => planes!(non_separable::hue),
+        BlendMode::Saturation => planes!(non_separable::saturation),
+        BlendMode::Color => planes!(non_separable::color),
+        BlendMode::Luminosity => planes!(non_separable::luminosity),
     }
-}
-
-/// The other modes. Not inlined: they are many, and the caller should not carry them.
-#[inline(never)]
-fn composite_rare<S: Simd>(simd: S, mode: BlendMode, dst: &mut PixelBlock, src: &PixelBlock, mask: &MaskBlock) {
-    use porter_duff::{Operands, composite};
-    use separable::{composite_components, composite_planes};
-    simd.vectorize(
-        #[inline(always)]
-        || match mode {
-            BlendMode::Destination => {}
-            BlendMode::Source => {
-                for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
-                    mix_pixels_row(simd, dst, src, mask);
-                }
-            }
-            BlendMode::SourceOver => {
-                for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
-                    over_pixels_row(simd, dst, src, mask);
-                }
-            }
-            BlendMode::Plus => porter_duff::plus(simd, dst, src, mask),
-            BlendMode::Clear => composite(
-                simd,
-                dst,
-                src,
-                mask,
-                #[inline(always)]
-                |_| u16x16::splat(simd, 0),
-            ),
-            BlendMode::DestinationOver => composite(simd, dst, src, mask, porter_duff::destination_over),
-            BlendMode::SourceIn => composite(simd, dst, src, mask, porter_duff::source_in),
-            BlendMode::DestinationIn => composite(simd, dst, src, mask, porter_duff::destination_in),
-            BlendMode::SourceOut => composite(simd, dst, src, mask, Operands::source_outside),
-            BlendMode::DestinationOut => composite(simd, dst, src, mask, Operands::destination_outside),
-            BlendMode::SourceAtop => composite(simd, dst, src, mask, porter_duff::source_atop),
-            BlendMode::DestinationAtop => composite(simd, dst, src, mask, porter_duff::destination_atop),
-            BlendMode::Xor => composite(simd, dst, src, mask, Operands::outside),
-            BlendMode::Modulate => composite(simd, dst, src, mask, porter_duff::modulate),
-            BlendMode::Multiply => composite(simd, dst, src, mask, separable::multiply),
-            BlendMode::Screen => composite(simd, dst, src, mask, separable::screen),
-            BlendMode::Overlay => composite(simd, dst, src, mask, separable::overlay),
-            BlendMode::Darken => composite(simd, dst, src, mask, separable::darken),
-            BlendMode::Lighten => composite(simd, dst, src, mask, separable::lighten),
-            BlendMode::HardLight => composite(simd, dst, src, mask, separable::hard_light),
-            BlendMode::Difference => composite(simd, dst, src, mask, separable::difference),
-            BlendMode::Exclusion => composite(simd, dst, src, mask, separable::exclusion),
-            BlendMode::ColorDodge => composite_components(simd, dst, src, mask, separable::color_dodge),
-            BlendMode::ColorBurn => composite_components(simd, dst, src, mask, separable::color_burn),
-            BlendMode::SoftLight => composite_components(simd, dst, src, mask, separable::soft_light),
-            BlendMode::Hue => composite_planes(simd, dst, src, mask, non_separable::hue),
-            BlendMode::Saturation => composite_planes(simd, dst, src, mask, non_separable::saturation),
-            BlendMode::Color => composite_planes(simd, dst, src, mask, non_separable::color),
-            BlendMode::Luminosity => composite_planes(simd, dst, src, mask, non_separable::luminosity),
-        },
-    );
 }
 
 #[cfg(test)]

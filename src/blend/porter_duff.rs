@@ -4,7 +4,7 @@
 //! Level 1, section 9. Each operator is a numerator over 255, at most 255², that is rounded once.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{u8x32, u16x16};
+use fearless_simd::{u8x32, u16x16, u32x8};
 
 use super::over::scale;
 use super::words::{Words, clamped, div255, mask_words, mix_block};
@@ -26,6 +26,12 @@ pub(super) struct Operands<S: Simd> {
 }
 
 impl<S: Simd> Operands<S> {
+    /// 0: nothing of either.
+    #[inline(always)]
+    pub(super) fn nothing(self) -> u16x16<S> {
+        u16x16::splat(self.s.simd, 0)
+    }
+
     /// The source outside the destination: s·(255 − da).
     #[inline(always)]
     pub(super) fn source_outside(self) -> u16x16<S> {
@@ -55,8 +61,6 @@ pub(super) fn composite<S: Simd>(
     mask: &MaskBlock,
     formula: impl Fn(Operands<S>) -> u16x16<S>,
 ) {
-    let colour = u16x16::splat(simd, 0);
-    let alpha: u16x16<S> = fearless_simd::u32x8::splat(simd, 0xffff_0000).bitcast();
     mix_block(
         simd,
         dst,
@@ -64,9 +68,11 @@ pub(super) fn composite<S: Simd>(
         mask,
         #[inline(always)]
         |dst, src| {
+            let color = u16x16::splat(simd, 0);
+            let alpha: u16x16<S> = u32x8::splat(simd, 0xffff_0000).bitcast();
             let ((d, da), (s, sa)) = (clamped(dst), clamped(src));
             Words {
-                even: div255(formula(Operands { s: s.even, d: d.even, sa, da, is_alpha: colour })),
+                even: div255(formula(Operands { s: s.even, d: d.even, sa, da, is_alpha: color })),
                 odd: div255(formula(Operands { s: s.odd, d: d.odd, sa, da, is_alpha: alpha })),
             }
         },
@@ -110,14 +116,19 @@ pub(super) fn modulate<S: Simd>(o: Operands<S>) -> u16x16<S> {
 }
 
 /// min(1, s·m + d). The mask scales the source: mixing a clamped sum would lose what the clamp cut off.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn plus<S: Simd>(simd: S, dst: &mut PixelBlock, src: &PixelBlock, mask: &MaskBlock) {
-    for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
-        let masks = mask_words(simd, mask);
-        let halves = dst.as_chunks_mut::<32>().0.iter_mut().zip(src.as_chunks::<32>().0);
-        for ((dst, src), mask) in halves.zip(masks) {
-            let source = scale(Words::from_bytes(u8x32::load_array_ref(simd, src)), mask).to_bytes();
-            u8x32::load_array_ref(simd, dst).saturating_add(source).store_array(dst);
-        }
-    }
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
+                let masks = mask_words(simd, mask);
+                let halves = dst.as_chunks_mut::<32>().0.iter_mut().zip(src.as_chunks::<32>().0);
+                for ((dst, src), mask) in halves.zip(masks) {
+                    let source = scale(Words::from_bytes(u8x32::load_array_ref(simd, src)), mask).to_bytes();
+                    u8x32::load_array_ref(simd, dst).saturating_add(source).store_array(dst);
+                }
+            }
+        },
+    );
 }

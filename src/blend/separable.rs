@@ -179,12 +179,10 @@ pub(super) fn composite_components<S: Simd>(
         mask,
         #[inline(always)]
         |d, s| {
-            let component =
-                |s_component, d_component| Component { s: s_component, d: d_component, sa: s.alpha, da: d.alpha };
             [
-                formula(component(s.rgb[0], d.rgb[0])),
-                formula(component(s.rgb[1], d.rgb[1])),
-                formula(component(s.rgb[2], d.rgb[2])),
+                formula(Component { s: s.rgb[0], d: d.rgb[0], sa: s.alpha, da: d.alpha }),
+                formula(Component { s: s.rgb[1], d: d.rgb[1], sa: s.alpha, da: d.alpha }),
+                formula(Component { s: s.rgb[2], d: d.rgb[2], sa: s.alpha, da: d.alpha }),
             ]
         },
     );

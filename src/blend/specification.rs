@@ -7,7 +7,7 @@ use crate::num::level::{SimdLevel, dispatch};
 use crate::surface::block::{MaskBlock, PixelBlock};
 
 /// Modes whose formulas are exact integers, rounded once.
-const INTEGER: [BlendMode; 22] = [
+pub(super) const INTEGER: [BlendMode; 22] = [
     Clear,
     Source,
     Destination,
@@ -54,9 +54,10 @@ fn clip_color(c: Rgb) -> Rgb {
     }
 }
 
-fn set_lum(c: Rgb, l: f64) -> Rgb {
+/// `SetLum` without its last step, `ClipColor`.
+fn shift_lum(c: Rgb, l: f64) -> Rgb {
     let d = l - lum(c);
-    clip_color(c.map(|v| v + d))
+    c.map(|v| v + d)
 }
 
 fn set_sat(c: Rgb, s: f64) -> Rgb {
@@ -92,10 +93,25 @@ fn separable(mode: BlendMode, cb: f64, cs: f64) -> f64 {
     }
 }
 
+fn straight([r, g, b, a]: [f64; 4]) -> Rgb {
+    [r, g, b].map(|v| if a == 0.0 { 0.0 } else { v / a })
+}
+
+/// B(Cb, Cs) of a non-separable mode before `ClipColor` brings it back into 0 ..= 1.
+pub(super) fn unclipped(mode: BlendMode, d: [f64; 4], s: [f64; 4]) -> Rgb {
+    let (cb, cs) = (straight(d), straight(s));
+    match mode {
+        Hue => shift_lum(set_sat(cs, sat(cb)), lum(cb)),
+        Saturation => shift_lum(set_sat(cb, sat(cs)), lum(cb)),
+        Color => shift_lum(cs, lum(cb)),
+        Luminosity => shift_lum(cb, lum(cs)),
+        _ => unreachable!("{mode} is separable"),
+    }
+}
+
 /// The premultiplied result of premultiplied pixels, before rounding; all in 0 ..= 1.
 fn blend(mode: BlendMode, d: [f64; 4], s: [f64; 4]) -> [f64; 4] {
     let (da, sa) = (d[3], s[3]);
-    let straight = |p: [f64; 4]| [p[0], p[1], p[2]].map(|v| if p[3] == 0.0 { 0.0 } else { v / p[3] });
     let (cb, cs) = (straight(d), straight(s));
     // The Porter–Duff fractions of source and destination.
     let duff = |fa: f64, fb: f64| std::array::from_fn(|i| fa * s[i] + fb * d[i]);
@@ -114,17 +130,14 @@ fn blend(mode: BlendMode, d: [f64; 4], s: [f64; 4]) -> [f64; 4] {
         Xor => return duff(1.0 - da, 1.0 - sa),
         Plus => return std::array::from_fn(|i| (s[i] + d[i]).min(1.0)),
         Modulate => return std::array::from_fn(|i| s[i] * d[i]),
-        Hue => set_lum(set_sat(cs, sat(cb)), lum(cb)),
-        Saturation => set_lum(set_sat(cb, sat(cs)), lum(cb)),
-        Color => set_lum(cs, lum(cb)),
-        Luminosity => set_lum(cb, lum(cs)),
+        Hue | Saturation | Color | Luminosity => clip_color(unclipped(mode, d, s)),
         _ => std::array::from_fn(|i| separable(mode, cb[i], cs[i])),
     };
     let component = |i: usize| s[i] * (1.0 - da) + d[i] * (1.0 - sa) + sa * da * b[i];
     [component(0), component(1), component(2), sa + da - sa * da]
 }
 
-fn unit(p: [u8; 4]) -> [f64; 4] {
+pub(super) fn unit(p: [u8; 4]) -> [f64; 4] {
     p.map(|v| f64::from(v) / 255.0)
 }
 
@@ -156,7 +169,7 @@ fn composite_pixel(mode: BlendMode, dst: [u8; 4], src: [u8; 4], mask: u8) -> [u8
 }
 
 /// A small generator (Marsaglia's xorshift), so that failures repeat.
-struct Random(u32);
+pub(super) struct Random(pub(super) u32);
 
 impl Random {
     fn next(&mut self) -> u32 {
@@ -180,7 +193,7 @@ impl Random {
     }
 
     /// Components at most alpha; often equal to it, to zero or to each other.
-    fn premultiplied(&mut self) -> [u8; 4] {
+    pub(super) fn premultiplied(&mut self) -> [u8; 4] {
         let [r, g, b, a] = self.bytes();
         let scale = |v: u8| (u32::from(v) * u32::from(a) / 255) as u8;
         match self.next() >> 29 {

@@ -129,7 +129,10 @@ pub(super) fn clamped<S: Simd>(bytes: u8x32<S>) -> (Words<S>, u16x16<S>) {
 }
 
 /// Replaces every pixel of `dst` by a mix, by `mask`, of itself and `blend(dst, src)`, eight pixels at a time.
-#[inline(always)]
+///
+/// Not inlined, so that every mode is a function of its own: there are many, and their callers should not
+/// carry them. `blend` must be a closure marked `#[inline(always)]`.
+#[inline(never)]
 pub(super) fn mix_block<S: Simd>(
     simd: S,
     dst: &mut PixelBlock,
@@ -137,15 +140,20 @@ pub(super) fn mix_block<S: Simd>(
     mask: &MaskBlock,
     blend: impl Fn(u8x32<S>, u8x32<S>) -> Words<S>,
 ) {
-    for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
-        let masks = mask_words(simd, mask);
-        let halves = dst.as_chunks_mut::<32>().0.iter_mut().zip(src.as_chunks::<32>().0);
-        for ((dst, src), mask) in halves.zip(masks) {
-            let below = u8x32::load_array_ref(simd, dst);
-            let blended = blend(below, u8x32::load_array_ref(simd, src));
-            mix(Words::from_bytes(below), blended, mask).to_bytes().store_array(dst);
-        }
-    }
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
+                let masks = mask_words(simd, mask);
+                let halves = dst.as_chunks_mut::<32>().0.iter_mut().zip(src.as_chunks::<32>().0);
+                for ((dst, src), mask) in halves.zip(masks) {
+                    let below = u8x32::load_array_ref(simd, dst);
+                    let blended = blend(below, u8x32::load_array_ref(simd, src));
+                    mix(Words::from_bytes(below), blended, mask).to_bytes().store_array(dst);
+                }
+            }
+        },
+    );
 }
 
 #[cfg(test)]
