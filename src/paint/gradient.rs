@@ -1,10 +1,10 @@
 //! Gradients: the position of every pixel along a line, between two circles or around a point.
 
-use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, mask32x8};
 
 use super::plane::{Affine, Plane};
-use super::ramp::{PixelGroup, Ramp};
+use super::ramp::Ramp;
 use super::shader::{LinearGradient, RadialGradient, SweepGradient};
 use crate::geom::Point;
 use crate::num::lanes::{max_f32, min_f32};
@@ -182,9 +182,9 @@ impl TwoPoint {
         }
     }
 
-    /// The positions of the points, and all ones in the lanes of those that lie on a circle.
+    /// The positions of the points, and which of them lie on a circle at all.
     #[inline(always)]
-    fn positions<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> (f32x8<S>, f32x8<S>) {
+    fn positions<S: Simd>(&self, simd: S, x: f32x8<S>, y: f32x8<S>) -> (f32x8<S>, mask32x8<S>) {
         let zero = f32x8::splat(simd, 0.0);
         let b = x * self.sign + self.b;
         let c = (x * x + y * y - self.radius * self.radius) * self.sign;
@@ -198,7 +198,7 @@ impl TwoPoint {
         let far = b.simd_ge(self.far_root_from);
         let t = far.select(q, c) / far.select(f32x8::splat(simd, self.a), q);
         let on_circle = discriminant.simd_ge(zero) & (t * self.growth + self.radius).simd_ge(zero);
-        (t, on_circle.select(f32x8::splat(simd, 1.0), zero))
+        (t, on_circle)
     }
 }
 
@@ -216,77 +216,77 @@ impl Gradient {
     #[inline(always)]
     pub(super) fn fetch<S: Simd>(&self, simd: S, x: i32, y: i32, out: &mut PixelBlock) {
         let groups = out.as_flattened_mut().as_chunks_mut::<32>().0;
+        // Positions first, then their colours: two loops, and one copy of the second for all geometries.
+        let mut positions = [[0.0; 8]; 16];
+        let mut holes = [[false; 8]; 16];
+        // A linear gradient that is the same along rows or columns needs 8 or 16 positions only.
+        let mut count = 16;
         match self.geometry {
-            Geometry::Linear => self.fetch_linear(simd, x, y, groups),
+            Geometry::Linear => count = self.linear_positions(simd, x, y, &mut positions),
             Geometry::Concentric { sign, bias } => {
-                let mut positions = self.points(simd, x, y);
-                for point in &mut positions {
+                for (position, point) in positions.iter_mut().zip(&self.points(simd, x, y)) {
                     let (x, y) = point.load(simd);
-                    point.x = ((x * x + y * y).sqrt() * sign + bias).to_array();
+                    *position = ((x * x + y * y).sqrt() * sign + bias).to_array();
                 }
-                self.shade_points(simd, &positions, groups);
             }
             Geometry::TwoPoint(circles) => {
-                let mut positions = self.points(simd, x, y);
-                for point in &mut positions {
+                for ((position, hole), point) in positions.iter_mut().zip(&mut holes).zip(&self.points(simd, x, y)) {
                     let (x, y) = point.load(simd);
                     let (t, on_circle) = circles.positions(simd, x, y);
-                    point.x = t.to_array();
-                    point.y = on_circle.to_array();
-                }
-                self.shade_points(simd, &positions, groups);
-                if circles.holes {
-                    for (group, point) in groups.iter_mut().zip(&positions) {
-                        for (pixel, on_circle) in group.as_chunks_mut::<4>().0.iter_mut().zip(point.y) {
-                            if on_circle == 0.0 {
-                                *pixel = [0; 4];
-                            }
-                        }
+                    *position = t.to_array();
+                    for (lane, hole) in hole.iter_mut().enumerate() {
+                        *hole = circles.holes && !on_circle.test(lane);
                     }
                 }
             }
             Geometry::Sweep { start, scale } => {
-                let mut positions = self.points(simd, x, y);
-                for point in &mut positions {
+                for (position, point) in positions.iter_mut().zip(&self.points(simd, x, y)) {
                     let (x, y) = point.load(simd);
-                    point.x = sweep_position(simd, turns(simd, y, x), start, scale).to_array();
+                    *position = sweep_position(simd, turns(simd, y, x), start, scale).to_array();
                 }
-                self.shade_points(simd, &positions, groups);
+            }
+        }
+        let (positions, _) = positions.split_at_mut(count);
+        self.ramp.shade(simd, positions, groups);
+        match count {
+            1 => {
+                let colors = groups.first().copied().unwrap_or([0; 32]);
+                for (pair, color) in groups.chunks_exact_mut(2).zip(colors.as_chunks::<4>().0) {
+                    pair.as_flattened_mut().as_chunks_mut::<4>().0.fill(*color);
+                }
+            }
+            2 => {
+                let (row, others) = groups.split_at_mut(2);
+                for pair in others.chunks_exact_mut(2) {
+                    pair.copy_from_slice(row);
+                }
+            }
+            _ => {}
+        }
+        if self.geometry.has_holes() {
+            let pixels = groups.as_flattened_mut().as_chunks_mut::<4>().0;
+            for (pixel, hole) in pixels.iter_mut().zip(holes.as_flattened()) {
+                if *hole {
+                    *pixel = [0; 4];
+                }
             }
         }
     }
 
+    /// The positions of the block's groups of eight pixels: all 16, or the first 2 where every row is the
+    /// same, or 1 with a lane for each row where every row is of one colour. Answers how many.
     #[inline(always)]
-    fn fetch_linear<S: Simd>(&self, simd: S, x: i32, y: i32, out: &mut [PixelGroup]) {
+    fn linear_positions<S: Simd>(&self, simd: S, x: i32, y: i32, positions: &mut [[f32; 8]; 16]) -> usize {
         let rows = self.plane.rows(0, y);
         if self.plane.is_constant_along_rows() {
-            // One colour a row: eight in all.
-            let mut colors = [[0; 32]];
-            self.ramp.shade(simd, &mut [rows], &mut colors);
-            for (groups, color) in out.chunks_exact_mut(2).zip(colors.as_flattened().as_chunks::<4>().0) {
-                for group in groups {
-                    group.as_chunks_mut::<4>().0.fill(*color);
-                }
-            }
-            return;
+            positions[0] = rows;
+            return 1;
         }
         let columns = self.plane.columns(simd, 0, x);
-        if self.plane.is_constant_along_columns() {
-            // One row, eight times.
-            let row = rows[0];
-            let mut colors = [[0; 32]; 2];
-            let mut positions = [(columns[0] + row).to_array(), (columns[1] + row).to_array()];
-            self.ramp.shade(simd, &mut positions, &mut colors);
-            for groups in out.chunks_exact_mut(2) {
-                groups.copy_from_slice(&colors);
-            }
-            return;
-        }
-        let mut positions = [[0.0; 8]; 16];
         for (pair, row) in positions.as_chunks_mut::<2>().0.iter_mut().zip(rows) {
             *pair = [(columns[0] + row).to_array(), (columns[1] + row).to_array()];
         }
-        self.ramp.shade(simd, &mut positions, out);
+        if self.plane.is_constant_along_columns() { 2 } else { 16 }
     }
 
     /// The block's pixel centres in the plane, in the order of its groups of eight pixels.
@@ -302,15 +302,6 @@ impl Gradient {
             }
         }
         points
-    }
-
-    #[inline(always)]
-    fn shade_points<S: Simd>(&self, simd: S, points: &[PointGroup; 16], out: &mut [PixelGroup]) {
-        let mut positions = [[0.0; 8]; 16];
-        for (position, point) in positions.iter_mut().zip(points) {
-            *position = point.x;
-        }
-        self.ramp.shade(simd, &mut positions, out);
     }
 }
 

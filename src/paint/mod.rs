@@ -10,6 +10,8 @@ pub(crate) mod prepare;
 mod ramp;
 mod shader;
 mod taps;
+#[cfg(test)]
+mod tests;
 
 pub use shader::{
     FilterQuality, GradientStop, LinearGradient, Pattern, RadialGradient, Shader, SpreadMode, SweepGradient,

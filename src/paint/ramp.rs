@@ -62,7 +62,8 @@ pub(super) fn clean_stops(stops: &[GradientStop], opacity: f32) -> Vec<GradientS
     let mut last = 0.0_f32;
     let mut clean = Vec::with_capacity(stops.len());
     for stop in stops {
-        let position = unit(stop.position);
+        // Positions that are all but 0 are 0: a slope between two of them would overflow.
+        let position = if stop.position > 1e-20 { unit(stop.position) } else { 0.0 };
         last = if position > last { position } else { last };
         let Color { r, g, b, .. } = stop.color;
         let color = Color::from_rgba(unit(r), unit(g), unit(b), stop.color.with_opacity(opacity).a);

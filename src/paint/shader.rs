@@ -95,9 +95,9 @@ pub struct RadialGradient {
 
 /// Colours around a point, clockwise on the canvas from the positive x axis.
 ///
-/// An angle and the same a whole turn on are one direction: the one that falls between `start_angle` and
-/// `end_angle` counts, and where none does, the one in 0° .. 360°, whose position is then outside 0 ..= 1.
-/// A range of 360° or more has no outside.
+/// An angle and the same a whole turn on are one direction. The one in 0° .. 360° counts where it lies
+/// between `start_angle` and `end_angle`, else the one a turn more or less that does; where none does, the
+/// position is outside 0 ..= 1. A range of 360° or more has no outside.
 #[derive(Clone, Debug)]
 pub struct SweepGradient {
     /// The point.
