@@ -7,14 +7,23 @@ use super::bilinear::gather;
 use super::pattern::ImagePattern;
 use super::taps::CubicTaps;
 use crate::num::lanes::{max_f32, min_f32, truncate_f32};
-use crate::surface::block::{BLOCK_HEIGHT, PixelBlock};
+use crate::surface::block::PixelBlock;
 
 /// Eight pixels' red, green, blue and alpha, 0 ..= 255 and beyond by what the filter overshoots.
 type Channels<S> = [f32x8<S>; 4];
 
-/// Four pixels of a row filtered for each of eight samples; a row's pixels begin at `start[lane]`.
-#[inline(always)]
+/// Four pixels of a row filtered for each of eight samples; a row's pixels begin at `start[lane]`. Not
+/// inlined: code size.
+#[inline(never)]
 fn filter_row<S: Simd>(simd: S, pixels: &[[u8; 4]], taps: &CubicTaps<S>, start: i32x8<S>) -> Channels<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || filter(simd, pixels, taps, start),
+    )
+}
+
+#[inline(always)]
+fn filter<S: Simd>(simd: S, pixels: &[[u8; 4]], taps: &CubicTaps<S>, start: i32x8<S>) -> Channels<S> {
     let mut sum = [f32x8::splat(simd, 0.0); 4];
     for k in 0..4 {
         let texels = gather(simd, pixels, taps.index[k] + start);
@@ -53,15 +62,15 @@ pub(super) fn fetch_aligned<S: Simd>(simd: S, pattern: &ImagePattern, x: i32, y:
     let row_taps = CubicTaps::new(simd, rows, &pattern.axes[1]);
     let start = i32x8::splat(simd, 0);
     let zero = f32x8::splat(simd, 0.0);
-    for half in 0..2 {
-        let taps = CubicTaps::new(simd, columns[half], &pattern.axes[0]);
+    for (half, column) in columns.into_iter().enumerate() {
+        let taps = CubicTaps::new(simd, column, &pattern.axes[0]);
         // Filtered rows by image row modulo 4; −1 where there is none yet.
         let mut kept = [(-1, [zero; 4]); 4];
-        for row in 0..BLOCK_HEIGHT {
+        for (row, line) in out.iter_mut().enumerate() {
             let mut sum = [zero; 4];
             for k in 0..4 {
-                let needed = row_taps.index[k].to_array()[row];
-                let weight = row_taps.weight[k].to_array()[row];
+                let needed = row_taps.index[k].to_array()[row & 7];
+                let weight = row_taps.weight[k].to_array()[row & 7];
                 let slot = &mut kept[needed as usize & 3];
                 if slot.0 != needed {
                     *slot = (needed, filter_row(simd, pattern.row(needed), &taps, start));
@@ -70,7 +79,7 @@ pub(super) fn fetch_aligned<S: Simd>(simd: S, pattern: &ImagePattern, x: i32, y:
                     *sum += value * weight;
                 }
             }
-            if let Some(target) = out[row].as_chunks_mut::<32>().0.get_mut(half) {
+            if let Some(target) = line.as_chunks_mut::<32>().0.get_mut(half) {
                 *target = pack(simd, sum);
             }
         }

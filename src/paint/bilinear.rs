@@ -60,8 +60,17 @@ struct RowTaps<S: Simd> {
 }
 
 impl<S: Simd> RowTaps<S> {
-    #[inline(always)]
+    /// The taps at coordinates `v`. Not inlined: code size.
+    #[inline(never)]
     fn new(simd: S, v: f32x8<S>, axis: &Axis) -> Self {
+        simd.vectorize(
+            #[inline(always)]
+            || Self::compute(simd, v, axis),
+        )
+    }
+
+    #[inline(always)]
+    fn compute(simd: S, v: f32x8<S>, axis: &Axis) -> Self {
         let LinearTaps { index: [i0, i1], weight: [w0, w1] } = LinearTaps::new(simd, v, axis);
         let none = i32x8::splat(simd, 0);
         // At a padded edge both taps are one pixel, in a mirrored image they are in reverse order: all that
@@ -82,7 +91,8 @@ impl<S: Simd> RowTaps<S> {
     #[inline(always)]
     fn mix(&self, simd: S, pixels: &[[u8; 4]], start: i32x8<S>) -> Wide<S> {
         let (first, second) = if self.neighbours {
-            let at = (self.first + start).to_array();
+            let at: u32x8<S> = (self.first + start).bitcast();
+            let at = at.to_array();
             let low = [pair(pixels, at[0]), pair(pixels, at[1]), pair(pixels, at[2]), pair(pixels, at[3])];
             let high = [pair(pixels, at[4]), pair(pixels, at[5]), pair(pixels, at[6]), pair(pixels, at[7])];
             let low: u32x8<S> = u64x4::simd_from(simd, low).bitcast();
@@ -96,33 +106,26 @@ impl<S: Simd> RowTaps<S> {
 }
 
 #[inline(always)]
-fn one(pixels: &[[u8; 4]], index: i32) -> u32 {
+fn one(pixels: &[[u8; 4]], index: u32) -> u32 {
     u32::from_ne_bytes(pixels.get(index as usize).copied().unwrap_or_default())
 }
 
 /// Two neighbouring pixels, the left one in the low half.
 #[inline(always)]
-fn pair(pixels: &[[u8; 4]], index: i32) -> u64 {
+fn pair(pixels: &[[u8; 4]], index: u32) -> u64 {
     let index = index as usize;
-    let found = pixels.get(index..index.wrapping_add(2)).map(<[[u8; 4]]>::as_flattened);
+    let found = pixels.get(index..index.saturating_add(2)).map(<[[u8; 4]]>::as_flattened);
     u64::from_le_bytes(found.and_then(|bytes| bytes.first_chunk::<8>()).copied().unwrap_or_default())
 }
 
 /// Eight pixels by index.
 #[inline(always)]
 pub(super) fn gather<S: Simd>(simd: S, pixels: &[[u8; 4]], index: i32x8<S>) -> u32x8<S> {
-    let i = index.to_array();
+    let i: u32x8<S> = index.bitcast();
+    let i = i.to_array();
     let low = [one(pixels, i[0]), one(pixels, i[1]), one(pixels, i[2]), one(pixels, i[3])];
     let high = [one(pixels, i[4]), one(pixels, i[5]), one(pixels, i[6]), one(pixels, i[7])];
     u32x8::simd_from(simd, [low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]])
-}
-
-/// Sixteen mixed pixels of one row of the image.
-#[inline(always)]
-fn mix_row<S: Simd>(simd: S, pattern: &ImagePattern, taps: &[RowTaps<S>; 2], row: i32) -> [Wide<S>; 2] {
-    let pixels = pattern.row(row);
-    let start = i32x8::splat(simd, 0);
-    [taps[0].mix(simd, pixels, start), taps[1].mix(simd, pixels, start)]
 }
 
 /// The block at (x, y) where the image is scaled and moved only: each row of the image that the block needs
@@ -135,20 +138,29 @@ pub(super) fn fetch_aligned<S: Simd>(simd: S, pattern: &ImagePattern, x: i32, y:
     let row_index = [row_taps.index[0].to_array(), row_taps.index[1].to_array()];
     let row_weight = [row_taps.weight[0].to_array(), row_taps.weight[1].to_array()];
     let empty = Wide { even: u16x16::splat(simd, 0), odd: u16x16::splat(simd, 0) };
-    // Two mixed rows, the one of an even image row first; −1 where there is none yet.
+    // The last two mixed rows, with their image rows; −1 where there is none yet.
     let mut kept = [(-1, [empty; 2]); 2];
     for row in 0..BLOCK_HEIGHT {
-        let (top, bottom) = (row_index[0][row], row_index[1][row]);
-        for needed in [top, bottom] {
-            let slot = &mut kept[needed as usize & 1];
-            if slot.0 != needed {
-                *slot = (needed, mix_row(simd, pattern, &taps, needed));
-            }
+        let needed = [row_index[0][row], row_index[1][row]];
+        let mut slots = [0; 2];
+        for k in 0..2 {
+            slots[k] = if kept[0].0 == needed[k] {
+                0
+            } else if kept[1].0 == needed[k] {
+                1
+            } else {
+                // The row that the other tap wants stays.
+                let slot = usize::from(kept[0].0 == needed[1 - k]);
+                let pixels = pattern.row(needed[k]);
+                let start = i32x8::splat(simd, 0);
+                kept[slot].0 = needed[k];
+                for (mixed, taps) in kept[slot].1.iter_mut().zip(&taps) {
+                    *mixed = taps.mix(simd, pixels, start);
+                }
+                slot
+            };
         }
-        // Both taps can have the same parity at the seam of a repeated image of odd height.
-        let upper =
-            if kept[top as usize & 1].0 == top { kept[top as usize & 1].1 } else { mix_row(simd, pattern, &taps, top) };
-        let lower = kept[bottom as usize & 1].1;
+        let [upper, lower] = [kept[slots[0] & 1].1, kept[slots[1] & 1].1];
         let upper_weight = u16x16::splat(simd, row_weight[0][row] as u16);
         let lower_weight = u16x16::splat(simd, row_weight[1][row] as u16);
         let halves = out[row].as_chunks_mut::<32>().0;

@@ -1,7 +1,7 @@
 //! Gradients: the position of every pixel along a line, between two circles or around a point.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, mask32x8};
+use fearless_simd::{f32x8, mask32x8, u8x32, u32x8};
 
 use super::plane::{Affine, Plane};
 use super::ramp::Ramp;
@@ -80,7 +80,7 @@ pub(super) enum Placed {
     At(Placement),
 }
 
-/// Steeper gradients than this per pixel count as having no length, and farther positions lose nothing.
+/// Positions that change by more than this from pixel to pixel mean a gradient without extent.
 const STEEPEST: f64 = 1e18;
 
 fn wide(point: Point) -> [f64; 2] {
@@ -105,7 +105,8 @@ pub(super) fn place_linear(gradient: &LinearGradient, to_device: Affine) -> Plac
         f: 0.0,
     };
     let to_plane = inverse.then(to_unit);
-    if !(to_plane.a.abs() + to_plane.c.abs() < STEEPEST) {
+    let steepness = to_plane.a.abs() + to_plane.c.abs();
+    if steepness.is_nan() || steepness >= STEEPEST {
         return Placed::LastColor;
     }
     let middle = [start[0] + dx * 0.5, start[1] + dy * 0.5];
@@ -140,7 +141,7 @@ pub(super) fn place_radial(gradient: &RadialGradient, to_device: Affine) -> Plac
     };
     let to_plane = inverse.then(to_unit);
     let steepness = [to_plane.a, to_plane.b, to_plane.c, to_plane.d].iter().fold(0.0, |sum, v| sum + v.abs());
-    if !(steepness < STEEPEST) {
+    if steepness.is_nan() || steepness >= STEEPEST {
         return Placed::Nothing;
     }
     Placed::At(Placement { plane: Plane::new(to_plane, to_device.map(start)), geometry })
@@ -218,7 +219,7 @@ impl Gradient {
         let groups = out.as_flattened_mut().as_chunks_mut::<32>().0;
         // Positions first, then their colours: two loops, and one copy of the second for all geometries.
         let mut positions = [[0.0; 8]; 16];
-        let mut holes = [[false; 8]; 16];
+        let mut masks = [[u32::MAX; 8]; 16];
         // A linear gradient that is the same along rows or columns needs 8 or 16 positions only.
         let mut count = 16;
         match self.geometry {
@@ -230,13 +231,12 @@ impl Gradient {
                 }
             }
             Geometry::TwoPoint(circles) => {
-                for ((position, hole), point) in positions.iter_mut().zip(&mut holes).zip(&self.points(simd, x, y)) {
+                let points = self.points(simd, x, y);
+                for ((position, mask), point) in positions.iter_mut().zip(&mut masks).zip(&points) {
                     let (x, y) = point.load(simd);
                     let (t, on_circle) = circles.positions(simd, x, y);
                     *position = t.to_array();
-                    for (lane, hole) in hole.iter_mut().enumerate() {
-                        *hole = circles.holes && !on_circle.test(lane);
-                    }
+                    *mask = on_circle.select(u32x8::splat(simd, u32::MAX), u32x8::splat(simd, 0)).to_array();
                 }
             }
             Geometry::Sweep { start, scale } => {
@@ -264,11 +264,9 @@ impl Gradient {
             _ => {}
         }
         if self.geometry.has_holes() {
-            let pixels = groups.as_flattened_mut().as_chunks_mut::<4>().0;
-            for (pixel, hole) in pixels.iter_mut().zip(holes.as_flattened()) {
-                if *hole {
-                    *pixel = [0; 4];
-                }
+            for (group, mask) in groups.iter_mut().zip(&masks) {
+                let pixels = u32x8::from_bytes(u8x32::simd_from(simd, *group));
+                *group = (pixels & u32x8::simd_from(simd, *mask)).to_bytes().to_array();
             }
         }
     }
@@ -344,7 +342,7 @@ fn turns<S: Simd>(simd: S, y: f32x8<S>, x: f32x8<S>) -> f32x8<S> {
     let m = small / large.simd_gt(zero).select(large, f32x8::splat(simd, 1.0));
     let m2 = m * m;
     let mut sum = m2 * 1.084_131e-3 + -5.348_279e-3;
-    sum = sum * m2 + 1.267_250_2e-2;
+    sum = sum * m2 + 1.267_250_3e-2;
     sum = sum * m2 + -2.106_151_9e-2;
     sum = sum * m2 + 3.152_511_8e-2;
     sum = sum * m2 + -5.302_623_8e-2;
@@ -353,4 +351,30 @@ fn turns<S: Simd>(simd: S, y: f32x8<S>, x: f32x8<S>) -> f32x8<S> {
     let quadrant = steep.select(f32x8::splat(simd, 0.25) - octant, octant);
     let half = x.simd_lt(zero).select(f32x8::splat(simd, 0.5) - quadrant, quadrant);
     y.simd_lt(zero).select(f32x8::splat(simd, 1.0) - half, half)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+
+    #[test]
+    fn turns_are_within_a_millionth() {
+        for level in SimdLevel::available() {
+            dispatch!(level, simd => {
+                for k in 0..20_000 {
+                    let angle = f64::from(k) / 20_000.0 * std::f64::consts::TAU;
+                    let (x, y) = ((libm::cos(angle) * 37.0) as f32, (libm::sin(angle) * 37.0) as f32);
+                    let truth = libm::atan2(f64::from(y), f64::from(x)) / std::f64::consts::TAU;
+                    let truth = if truth < 0.0 { truth + 1.0 } else { truth };
+                    let found = turns(simd, f32x8::splat(simd, y), f32x8::splat(simd, x)).to_array()[3];
+                    assert!((f64::from(found) - truth).abs() < 2e-7, "{found}, not {truth} at {level:?}");
+                }
+                let axes = [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.25), (0.0, -1.0, 0.5), (-1.0, 0.0, 0.75)];
+                for (y, x, turn) in axes {
+                    assert_eq!(turns(simd, f32x8::splat(simd, y), f32x8::splat(simd, x)).to_array()[0], turn);
+                }
+            });
+        }
+    }
 }

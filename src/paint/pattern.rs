@@ -7,7 +7,7 @@ use fearless_simd::{f32x8, u16x16, u32x8};
 
 use super::plane::{Affine, Plane};
 use super::shader::{FilterQuality, Pattern, SpreadMode};
-use super::taps::{Axis, clamp_far};
+use super::taps::Axis;
 use super::{bicubic, bilinear};
 use crate::num::lanes::div255_u16;
 use crate::surface::Pixmap;
@@ -148,12 +148,12 @@ fn nearest_aligned<S: Simd>(simd: S, pattern: &ImagePattern, x: i32, y: i32, out
     let mut index = [0; 16];
     let mut shown = [0_u32; 16];
     for half in 0..2 {
-        let (i, inside) = pattern.axes[0].wrap(simd, clamp_far(simd, columns[half]).floor());
+        let (i, inside) = pattern.axes[0].nearest(simd, columns[half]);
         index[half * 8..half * 8 + 8].copy_from_slice(i.as_slice());
         let mask = inside.select(u32x8::splat(simd, u32::MAX), u32x8::splat(simd, 0));
         shown[half * 8..half * 8 + 8].copy_from_slice(mask.as_slice());
     }
-    let (row_index, row_shown) = pattern.axes[1].wrap(simd, clamp_far(simd, rows).floor());
+    let (row_index, row_shown) = pattern.axes[1].nearest(simd, rows);
     let row_index = row_index.to_array();
     let first = index[0];
     let consecutive = index.iter().enumerate().all(|(k, i)| *i == first + k as i32);
@@ -187,9 +187,8 @@ fn nearest<S: Simd>(simd: S, pattern: &ImagePattern, x: i32, y: i32, out: &mut P
     let width = pattern.axes[0].size as i32;
     let groups = out.as_flattened_mut().as_chunks_mut::<32>().0;
     for (group, point) in groups.iter_mut().zip(pattern.points(simd, x, y)) {
-        let at = |axis: usize| f32x8::simd_from(simd, point[axis]);
-        let (column, column_shown) = pattern.axes[0].wrap(simd, clamp_far(simd, at(0)).floor());
-        let (row, row_shown) = pattern.axes[1].wrap(simd, clamp_far(simd, at(1)).floor());
+        let (column, column_shown) = pattern.axes[0].nearest(simd, f32x8::simd_from(simd, point[0]));
+        let (row, row_shown) = pattern.axes[1].nearest(simd, f32x8::simd_from(simd, point[1]));
         let index = (row * width + column).to_array();
         let shown = (column_shown & row_shown).select(u32x8::splat(simd, u32::MAX), u32x8::splat(simd, 0));
         let mut found = [0; 8];

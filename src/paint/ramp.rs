@@ -185,19 +185,30 @@ impl Ramp {
     #[inline(always)]
     fn shade_many<S: Simd, const OPAQUE: bool>(&self, simd: S, positions: &[[f32; 8]], out: &mut [PixelGroup]) {
         let (low, high) = (f32x8::splat(simd, self.low), f32x8::splat(simd, self.high));
+        // The piece in hand: neighbours mostly share one, and so do groups.
+        let (mut start, mut end) = (f32::INFINITY, f32::INFINITY);
+        let mut piece = PieceLanes::splat(simd, &self.piece(0));
         for (position, out) in positions.iter().zip(out) {
             let t = min_f32(max_f32(f32x8::simd_from(simd, *position), low), high);
             let lanes = t.to_array();
-            // Neighbours mostly share a piece: then its coefficients are loaded once for all of them.
-            let index = self.find(lanes[0]);
-            let start = index.checked_sub(1).and_then(|k| self.ends.get(k)).copied().unwrap_or(f32::NEG_INFINITY);
-            let end = self.ends.get(index).copied().unwrap_or(f32::INFINITY);
-            let pieces = if (t.simd_ge(start) & t.simd_lt(end)).all_true() {
-                PieceLanes::splat(simd, &self.piece(index))
-            } else {
-                PieceLanes::gather(simd, lanes.map(|t| self.piece(self.find(t))))
-            };
-            *out = pieces.pixels::<OPAQUE>(simd, t).to_bytes().to_array();
+            let mut pixels = u32x8::splat(simd, 0);
+            let mut open = 255_u64;
+            // Each round gives the pixels of all lanes in the piece of the first lane that has none yet.
+            while open != 0 {
+                let lane = open.trailing_zeros() as usize & 7;
+                if !(lanes[lane] >= start && lanes[lane] < end) {
+                    let index = self.find(lanes[lane]);
+                    start = index.checked_sub(1).and_then(|k| self.ends.get(k)).copied().unwrap_or(self.low);
+                    end = self.ends.get(index).copied().unwrap_or(f32::INFINITY);
+                    piece = PieceLanes::splat(simd, &self.piece(index));
+                }
+                let inside = t.simd_ge(start) & t.simd_lt(end);
+                // Lanes of other pieces are clamped into this one, where its colours are within bounds.
+                let clamped = min_f32(max_f32(t, f32x8::splat(simd, start)), f32x8::splat(simd, end));
+                pixels = inside.select(piece.pixels::<OPAQUE>(simd, clamped), pixels);
+                open &= !(inside.to_bitmask() | 1 << lane);
+            }
+            *out = pixels.to_bytes().to_array();
         }
     }
 
@@ -226,7 +237,7 @@ fn scaled(color: Color, opaque: bool) -> [f32; 4] {
     }
 }
 
-/// A piece for each of eight lanes.
+/// A piece's coefficients in vectors.
 struct PieceLanes<S: Simd> {
     origin: f32x8<S>,
     color: [f32x8<S>; 4],
@@ -240,31 +251,6 @@ impl<S: Simd> PieceLanes<S> {
             [f32x8::splat(simd, v[0]), f32x8::splat(simd, v[1]), f32x8::splat(simd, v[2]), f32x8::splat(simd, v[3])]
         };
         Self { origin: f32x8::splat(simd, piece.origin), color: lanes(piece.color), slope: lanes(piece.slope) }
-    }
-
-    #[inline(always)]
-    fn gather(simd: S, pieces: [Piece; 8]) -> Self {
-        let mut origin = [0.0; 8];
-        let mut color = [[0.0; 8]; 4];
-        let mut slope = [[0.0; 8]; 4];
-        for (lane, piece) in pieces.iter().enumerate() {
-            origin[lane] = piece.origin;
-            for channel in 0..4 {
-                color[channel][lane] = piece.color[channel];
-                slope[channel][lane] = piece.slope[channel];
-            }
-        }
-        Self {
-            origin: f32x8::simd_from(simd, origin),
-            color: color.map(
-                #[inline(always)]
-                |v| f32x8::simd_from(simd, v),
-            ),
-            slope: slope.map(
-                #[inline(always)]
-                |v| f32x8::simd_from(simd, v),
-            ),
-        }
     }
 
     /// The pixels at the clamped positions `t`.

@@ -15,8 +15,8 @@ pub(super) struct Axis {
     pub(super) spread: SpreadMode,
 }
 
-/// Coordinates are clamped to ± this: four times what an image's side can be squared into, and far
-/// enough below 2^24 that neighbours are still told apart.
+/// Coordinates are clamped to ± this, 2^22: far beyond any image, and far enough below 2^24 that whole
+/// numbers and halves are still told apart.
 const FAR: f32 = 4_194_304.0;
 
 impl Axis {
@@ -25,10 +25,19 @@ impl Axis {
         Self { size, inverse: 1.0 / size, spread }
     }
 
+    /// The pixel that holds coordinate `v`; see [`Axis::wrap`]. Not inlined: code size.
+    #[inline(never)]
+    pub(super) fn nearest<S: Simd>(&self, simd: S, v: f32x8<S>) -> (i32x8<S>, mask32x8<S>) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.wrap(simd, clamp_far(simd, v).floor()),
+        )
+    }
+
     /// The pixel that whole coordinate `i` (|i| ≤ 2^23) shows, and whether there is one: false in the
     /// lanes beyond the edges of a decal, whose index is that of the nearest edge.
     #[inline(always)]
-    pub(super) fn wrap<S: Simd>(&self, simd: S, i: f32x8<S>) -> (i32x8<S>, mask32x8<S>) {
+    fn wrap<S: Simd>(&self, simd: S, i: f32x8<S>) -> (i32x8<S>, mask32x8<S>) {
         let zero = f32x8::splat(simd, 0.0);
         let last = f32x8::splat(simd, self.size - 1.0);
         let inside = i.simd_ge(zero) & i.simd_le(last);
@@ -57,7 +66,7 @@ fn remainder<S: Simd>(simd: S, i: f32x8<S>, divisor: f32, inverse: f32) -> f32x8
 
 /// A coordinate clamped to where its neighbours can be told apart; NaN goes to the low end.
 #[inline(always)]
-pub(super) fn clamp_far<S: Simd>(simd: S, v: f32x8<S>) -> f32x8<S> {
+fn clamp_far<S: Simd>(simd: S, v: f32x8<S>) -> f32x8<S> {
     min_f32(max_f32(v, f32x8::splat(simd, -FAR)), f32x8::splat(simd, FAR))
 }
 
@@ -70,9 +79,17 @@ pub(super) struct LinearTaps<S: Simd> {
 }
 
 impl<S: Simd> LinearTaps<S> {
-    /// The taps at coordinates `v` (pixel centres at .5).
-    #[inline(always)]
+    /// The taps at coordinates `v` (pixel centres at .5). Not inlined: code size.
+    #[inline(never)]
     pub(super) fn new(simd: S, v: f32x8<S>, axis: &Axis) -> Self {
+        simd.vectorize(
+            #[inline(always)]
+            || Self::compute(simd, v, axis),
+        )
+    }
+
+    #[inline(always)]
+    fn compute(simd: S, v: f32x8<S>, axis: &Axis) -> Self {
         let v = clamp_far(simd, v - 0.5);
         let first = v.floor();
         let second_weight = truncate_f32((v - first) * 256.0 + 0.5);
@@ -94,9 +111,17 @@ pub(super) struct CubicTaps<S: Simd> {
 
 impl<S: Simd> CubicTaps<S> {
     /// The taps at coordinates `v`, of the cubic with B = C = ⅓ (Mitchell and Netravali, *Reconstruction
-    /// Filters in Computer Graphics*, 1988).
-    #[inline(always)]
+    /// Filters in Computer Graphics*, 1988). Not inlined: code size.
+    #[inline(never)]
     pub(super) fn new(simd: S, v: f32x8<S>, axis: &Axis) -> Self {
+        simd.vectorize(
+            #[inline(always)]
+            || Self::compute(simd, v, axis),
+        )
+    }
+
+    #[inline(always)]
+    fn compute(simd: S, v: f32x8<S>, axis: &Axis) -> Self {
         let v = clamp_far(simd, v - 0.5);
         let first = v.floor();
         let f = v - first;

@@ -84,7 +84,8 @@ fn reference(shader: &Shader) -> Option<Vec<[u8; 4]>> {
 /// Whether the formula jumps or is very steep near the pixel's centre, so that rounding errors decide.
 fn is_steep(shader: &Shader, k: usize) -> bool {
     let (x, y) = ((k % SIZE) as f64 + 0.5, (k / SIZE) as f64 + 0.5);
-    let h = 5e-3;
+    // tiny-skia's arc tangent is coarser than the rest of its arithmetic.
+    let h = if matches!(shader, Shader::SweepGradient(_)) { 0.05 } else { 5e-3 };
     let near = [(0.0, 0.0), (h, h), (-h, h), (h, -h), (-h, -h)]
         .map(|(dx, dy)| oracle::color(shader, Transform::IDENTITY, 1.0, x + dx, y + dy));
     near.iter().any(|c| (0..4).any(|channel| (c[channel] - near[0][channel]).abs() > 1.0))
@@ -94,22 +95,31 @@ fn is_steep(shader: &Shader, k: usize) -> bool {
 ///
 /// | what | limit | why |
 /// |---|---|---|
-/// | gradients, nearest, bilinear | 1 | both round to nearest from different arithmetic |
+/// | opaque gradients, nearest | 1 | both round to nearest from different arithmetic |
+/// | bilinear | 2 | our weights are in 1/256, and neighbours of full contrast show it |
+/// | translucent gradients | 2 | tiny-skia premultiplies in 16 bits and is up to 1.6 from the formula |
 /// | bicubic | 2 | as above; where its colours exceed their alpha they are first cut down to it |
+/// | patterns along seams | – | tiny-skia mixes other pixels than it weighs; few, and only where it is wrong |
 /// | patterns moved only | – | tiny-skia takes the nearest pixel, even for half a pixel |
 /// | sweeps that start at 0° or end a whole turn after it | – | tiny-skia 0.12 leaves out their scale |
 /// | sweeps that start below 0° or end above 360° | – | tiny-skia takes no angle a turn further |
 fn limit(shader: &Shader) -> Option<i32> {
     match shader {
         Shader::Pattern(p) if p.transform.is_translate() && p.quality != FilterQuality::Nearest => None,
-        Shader::Pattern(p) if p.quality == FilterQuality::Bicubic => Some(2),
+        Shader::Pattern(p) if p.quality != FilterQuality::Nearest => Some(2),
+        Shader::LinearGradient(g) => Some(gradient_limit(&g.stops)),
+        Shader::RadialGradient(g) => Some(gradient_limit(&g.stops)),
         Shader::SweepGradient(g) => {
             let whole = g.start_angle == 0.0 && g.end_angle == 360.0;
             let (scaled, wrapped) = (g.start_angle != 0.0, g.start_angle < 0.0 || g.end_angle > 360.0);
-            (whole || (scaled && !wrapped)).then_some(1)
+            (whole || (scaled && !wrapped)).then_some(gradient_limit(&g.stops))
         }
         _ => Some(1),
     }
+}
+
+fn gradient_limit(stops: &[GradientStop]) -> i32 {
+    if stops.iter().all(|stop| stop.color.a == 1.0) { 1 } else { 2 }
 }
 
 #[test]
@@ -139,8 +149,13 @@ fn random_paints_look_like_tiny_skias() {
             if ours.iter().zip(theirs).any(|(a, b)| (i32::from(*a) - i32::from(*b)).abs() > limit) {
                 let (x, y) = (k % SIZE, k / SIZE);
                 let truth = oracle::color(&shader, Transform::IDENTITY, 1.0, x as f64 + 0.5, y as f64 + 0.5);
+                let error = |pixel: &[u8; 4]| {
+                    pixel.iter().zip(truth).map(|(v, truth)| (f64::from(*v) - truth).abs()).fold(0.0, f64::max)
+                };
+                // A few pixels along an image's seams: tiny-skia rounds weights and indices apart.
+                let seam = matches!(shader, Shader::Pattern(_)) && error(ours) < 1.5 && error(theirs) > 3.0;
                 assert!(
-                    is_steep(&shader, k),
+                    seam || is_steep(&shader, k),
                     "round {round} ({x}, {y}): {ours:?}, tiny-skia {theirs:?}, truth {truth:?}\n{shader:?}"
                 );
                 steep += 1;
