@@ -342,8 +342,8 @@ fn turns<S: Simd>(simd: S, y: f32x8<S>, x: f32x8<S>) -> f32x8<S> {
     let m = small / large.simd_gt(zero).select(large, f32x8::splat(simd, 1.0));
     let m2 = m * m;
     let mut sum = m2 * 1.084_131e-3 + -5.348_279e-3;
-    sum = sum * m2 + 1.267_250_3e-2;
-    sum = sum * m2 + -2.106_151_9e-2;
+    sum = sum * m2 + 1.267_250_2e-2;
+    sum = sum * m2 + -2.106_152e-2;
     sum = sum * m2 + 3.152_511_8e-2;
     sum = sum * m2 + -5.302_623_8e-2;
     sum = sum * m2 + 1.591_543_2e-1;
