@@ -94,6 +94,10 @@ pub struct RadialGradient {
 }
 
 /// Colours around a point, clockwise on the canvas from the positive x axis.
+///
+/// An angle and the same a whole turn on are one direction. The one in 0° .. 360° counts where it lies
+/// between `start_angle` and `end_angle`, else the one a turn more or less that does; where none does, the
+/// position is outside 0 ..= 1. A range of 360° or more has no outside.
 #[derive(Clone, Debug)]
 pub struct SweepGradient {
     /// The point.
@@ -178,6 +182,20 @@ impl LinearGradient {
             transform: Transform::IDENTITY,
         }
     }
+
+    /// The same gradient with `spread` outside 0 ..= 1.
+    #[must_use]
+    pub fn with_spread(mut self, spread: SpreadMode) -> Self {
+        self.spread = spread;
+        self
+    }
+
+    /// The same gradient with `transform` from its own space to user space, in place of what it had.
+    #[must_use]
+    pub fn with_transform(mut self, transform: Transform) -> Self {
+        self.transform = transform;
+        self
+    }
 }
 
 impl RadialGradient {
@@ -205,6 +223,20 @@ impl RadialGradient {
             transform: Transform::IDENTITY,
         }
     }
+
+    /// The same gradient with `spread` outside 0 ..= 1.
+    #[must_use]
+    pub fn with_spread(mut self, spread: SpreadMode) -> Self {
+        self.spread = spread;
+        self
+    }
+
+    /// The same gradient with `transform` from its own space to user space, in place of what it had.
+    #[must_use]
+    pub fn with_transform(mut self, transform: Transform) -> Self {
+        self.transform = transform;
+        self
+    }
 }
 
 impl SweepGradient {
@@ -219,6 +251,28 @@ impl SweepGradient {
             transform: Transform::IDENTITY,
         }
     }
+
+    /// The same gradient from `start_angle` (position 0) to `end_angle` (position 1), in degrees.
+    #[must_use]
+    pub fn with_angles(mut self, start_angle: f32, end_angle: f32) -> Self {
+        self.start_angle = start_angle;
+        self.end_angle = end_angle;
+        self
+    }
+
+    /// The same gradient with `spread` outside 0 ..= 1.
+    #[must_use]
+    pub fn with_spread(mut self, spread: SpreadMode) -> Self {
+        self.spread = spread;
+        self
+    }
+
+    /// The same gradient with `transform` from its own space to user space, in place of what it had.
+    #[must_use]
+    pub fn with_transform(mut self, transform: Transform) -> Self {
+        self.transform = transform;
+        self
+    }
 }
 
 impl Pattern {
@@ -231,5 +285,27 @@ impl Pattern {
             spread_y: SpreadMode::Repeat,
             transform: Transform::IDENTITY,
         }
+    }
+
+    /// The same pattern sampled with `quality`.
+    #[must_use]
+    pub fn with_quality(mut self, quality: FilterQuality) -> Self {
+        self.quality = quality;
+        self
+    }
+
+    /// The same pattern with `spread` beyond all four edges; set the fields for one of each axis.
+    #[must_use]
+    pub fn with_spread(mut self, spread: SpreadMode) -> Self {
+        self.spread_x = spread;
+        self.spread_y = spread;
+        self
+    }
+
+    /// The same pattern with `transform` from the image's pixels to user space, in place of what it had.
+    #[must_use]
+    pub fn with_transform(mut self, transform: Transform) -> Self {
+        self.transform = transform;
+        self
     }
 }

@@ -223,7 +223,9 @@ impl<'a> PixmapRef<'a> {
             let from = y as usize * self.stride + inside.left as usize * 4;
             let to = y.abs_diff(rect.top) as usize * stride + inside.left.abs_diff(rect.left) as usize * 4;
             let length = inside.width() as usize * 4;
-            if let (Some(source), Some(target)) = (self.data.get(from..from + length), out.data.get_mut(to..to + length)) {
+            if let (Some(source), Some(target)) =
+                (self.data.get(from..from + length), out.data.get_mut(to..to + length))
+            {
                 target.copy_from_slice(source);
             }
         }
@@ -309,7 +311,9 @@ impl<'a> PixmapMut<'a> {
             let from = row.abs_diff(y) as usize * source.stride + inside.left.abs_diff(x) as usize * 4;
             let to = row as usize * self.stride + inside.left as usize * 4;
             let length = inside.width() as usize * 4;
-            if let (Some(read), Some(write)) = (source.data.get(from..from + length), self.data.get_mut(to..to + length)) {
+            if let (Some(read), Some(write)) =
+                (source.data.get(from..from + length), self.data.get_mut(to..to + length))
+            {
                 write.copy_from_slice(read);
             }
         }

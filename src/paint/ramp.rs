@@ -1,0 +1,299 @@
+//! The colours along a gradient: from a position to a premultiplied pixel.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, i32x8, u32x8};
+
+use super::shader::{GradientStop, SpreadMode};
+use crate::color::{Color, unit};
+use crate::num::lanes::{max_f32, min_f32, min_i32, truncate_f32};
+
+/// Eight neighbouring pixels of a row, as bytes.
+pub(super) type PixelGroup = [u8; 32];
+
+/// A gradient's colours, prepared: one linear piece per interval between stops of different position.
+///
+/// Coincident stops leave no interval, so that the later one wins at their position and after it.
+#[derive(Debug)]
+pub(super) struct Ramp {
+    repetition: Repetition,
+    /// Positions are clamped to this range before they are looked up.
+    low: f32,
+    high: f32,
+    /// Whether every stop is opaque: then colours need no multiplication.
+    opaque: bool,
+    pieces: Vec<Piece>,
+    /// Where each piece but the last ends.
+    ends: Vec<f32>,
+}
+
+/// How positions outside 0 ..= 1 are folded into it. Pad needs nothing but the clamp, and decal is a pad
+/// between transparent pieces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Repetition {
+    None,
+    Repeat,
+    Reflect,
+}
+
+/// Colours over one interval: `color` at `origin`, and what each unit of position adds.
+///
+/// Where the ramp is opaque, red, green and blue are in 0.5 ..= 255.5, ready to be truncated; else they are
+/// straight, in 0 ..= 1, and alpha is in 0 ..= 255.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Piece {
+    origin: f32,
+    color: [f32; 4],
+    slope: [f32; 4],
+}
+
+/// What a list of stops comes to.
+#[derive(Debug)]
+pub(super) enum Colors {
+    /// No stop.
+    None,
+    /// The same everywhere.
+    Constant([u8; 4]),
+    /// Different by position.
+    Ramp(Ramp),
+}
+
+/// The stops' positions, clamped and in order, with their colours times `opacity`.
+pub(super) fn clean_stops(stops: &[GradientStop], opacity: f32) -> Vec<GradientStop> {
+    let mut last = 0.0_f32;
+    let mut clean = Vec::with_capacity(stops.len());
+    for stop in stops {
+        // Positions that are all but 0 are 0: a slope between two of them would overflow.
+        let position = if stop.position > 1e-20 { unit(stop.position) } else { 0.0 };
+        last = if position > last { position } else { last };
+        let Color { r, g, b, .. } = stop.color;
+        let color = Color::from_rgba(unit(r), unit(g), unit(b), stop.color.with_opacity(opacity).a);
+        clean.push(GradientStop::new(last, color));
+    }
+    clean
+}
+
+impl Colors {
+    /// The colours of `stops`, times `opacity`. One stop paints everywhere (SVG 2, 14.2.4); several of the
+    /// same colour leave a geometry's holes open.
+    pub(super) fn new(stops: &[GradientStop], spread: SpreadMode, opacity: f32, holes: bool) -> Self {
+        let stops = clean_stops(stops, opacity);
+        let (Some(first), Some(last)) = (stops.first(), stops.last()) else { return Self::None };
+        let same = stops.iter().all(|stop| stop.color == first.color);
+        let invisible = stops.iter().all(|stop| stop.color.a == 0.0);
+        let bounded = holes || spread == SpreadMode::Decal;
+        if invisible || stops.len() == 1 || (same && !bounded) {
+            return Self::Constant(first.color.premultiply());
+        }
+        Self::Ramp(Ramp::new(&stops, *first, *last, spread))
+    }
+}
+
+impl Ramp {
+    fn new(stops: &[GradientStop], first: GradientStop, last: GradientStop, spread: SpreadMode) -> Self {
+        let opaque = spread != SpreadMode::Decal && stops.iter().all(|stop| stop.color.a == 1.0);
+        let decal = spread == SpreadMode::Decal;
+        let constant = |color: Color| Piece { origin: 0.0, color: scaled(color, opaque), slope: [0.0; 4] };
+        // (end, piece) in order; the last end is never looked at.
+        let mut list: Vec<(f32, Piece)> = Vec::with_capacity(stops.len() + 3);
+        if decal {
+            list.push((0.0, constant(Color::TRANSPARENT)));
+        }
+        list.push((first.position, constant(first.color)));
+        for (from, to) in stops.iter().zip(stops.iter().skip(1)) {
+            let (from_color, to_color) = (scaled(from.color, opaque), scaled(to.color, opaque));
+            let length = f64::from(to.position) - f64::from(from.position);
+            let slope = |k: usize| ((f64::from(to_color[k]) - f64::from(from_color[k])) / length) as f32;
+            let slope = [slope(0), slope(1), slope(2), slope(3)];
+            list.push((to.position, Piece { origin: from.position, color: from_color, slope }));
+        }
+        if decal {
+            list.push((1.0_f32.next_up(), constant(last.color)));
+        }
+        list.push((f32::INFINITY, constant(if decal { Color::TRANSPARENT } else { last.color })));
+
+        // Intervals of no length go; so do flat ends that the clamp stands for, where no step precedes them.
+        let mut start = f32::NEG_INFINITY;
+        let mut pieces = Vec::with_capacity(list.len());
+        let mut ends = Vec::with_capacity(list.len());
+        for (end, piece) in list {
+            if end > start {
+                pieces.push(piece);
+                ends.push(end);
+                start = end;
+            }
+        }
+        let (mut low, mut high) = (-1.0, 2.0);
+        if !decal && pieces.len() > 2 {
+            if pieces.get(1).is_some_and(|piece| piece.color == scaled(first.color, opaque)) {
+                pieces.remove(0);
+                low = ends.remove(0);
+            }
+            let final_stop = stops.iter().rev().find(|stop| stop.position < last.position);
+            // The last sloping piece ends in the colour of the first stop at the last position.
+            let arrives = stops.iter().find(|stop| stop.position == last.position);
+            if final_stop.is_some() && arrives.is_some_and(|stop| stop.color == last.color) && pieces.len() > 1 {
+                pieces.pop();
+                high = last.position;
+            }
+        }
+        ends.truncate(pieces.len().saturating_sub(1));
+        let repetition = match spread {
+            SpreadMode::Repeat => Repetition::Repeat,
+            SpreadMode::Reflect => Repetition::Reflect,
+            SpreadMode::Pad | SpreadMode::Decal => Repetition::None,
+        };
+        Self { repetition, low, high, opaque, pieces, ends }
+    }
+
+    /// Whether every pixel it gives is opaque.
+    pub(super) fn is_opaque(&self) -> bool {
+        self.opaque
+    }
+
+    /// The premultiplied pixels at `positions`, eight to a group. NaN counts as far below 0.
+    #[inline(always)]
+    pub(super) fn shade<S: Simd>(&self, simd: S, positions: &mut [[f32; 8]], out: &mut [PixelGroup]) {
+        match self.repetition {
+            Repetition::None => {}
+            Repetition::Repeat => repeat(simd, positions),
+            Repetition::Reflect => reflect(simd, positions),
+        }
+        match (self.pieces.as_slice(), self.opaque) {
+            ([piece], true) => self.shade_one::<S, true>(simd, piece, positions, out),
+            ([piece], false) => self.shade_one::<S, false>(simd, piece, positions, out),
+            (_, true) => self.shade_many::<S, true>(simd, positions, out),
+            (_, false) => self.shade_many::<S, false>(simd, positions, out),
+        }
+    }
+
+    #[inline(always)]
+    fn shade_one<S: Simd, const OPAQUE: bool>(
+        &self,
+        simd: S,
+        piece: &Piece,
+        positions: &[[f32; 8]],
+        out: &mut [PixelGroup],
+    ) {
+        let (low, high) = (f32x8::splat(simd, self.low), f32x8::splat(simd, self.high));
+        let lanes = PieceLanes::splat(simd, piece);
+        for (position, out) in positions.iter().zip(out) {
+            let t = min_f32(max_f32(f32x8::simd_from(simd, *position), low), high);
+            *out = lanes.pixels::<OPAQUE>(simd, t).to_bytes().to_array();
+        }
+    }
+
+    #[inline(always)]
+    fn shade_many<S: Simd, const OPAQUE: bool>(&self, simd: S, positions: &[[f32; 8]], out: &mut [PixelGroup]) {
+        let (low, high) = (f32x8::splat(simd, self.low), f32x8::splat(simd, self.high));
+        // The piece in hand: neighbours mostly share one, and so do groups.
+        let (mut start, mut end) = (f32::INFINITY, f32::INFINITY);
+        let mut piece = PieceLanes::splat(simd, &self.piece(0));
+        for (position, out) in positions.iter().zip(out) {
+            let t = min_f32(max_f32(f32x8::simd_from(simd, *position), low), high);
+            let lanes = t.to_array();
+            let mut pixels = u32x8::splat(simd, 0);
+            let mut open = 255_u64;
+            // Each round gives the pixels of all lanes in the piece of the first lane that has none yet.
+            while open != 0 {
+                let lane = open.trailing_zeros() as usize & 7;
+                if !(lanes[lane] >= start && lanes[lane] < end) {
+                    let index = self.find(lanes[lane]);
+                    start = index.checked_sub(1).and_then(|k| self.ends.get(k)).copied().unwrap_or(self.low);
+                    end = self.ends.get(index).copied().unwrap_or(f32::INFINITY);
+                    piece = PieceLanes::splat(simd, &self.piece(index));
+                }
+                let inside = t.simd_ge(start) & t.simd_lt(end);
+                // Lanes of other pieces are clamped into this one, where its colours are within bounds.
+                let clamped = min_f32(max_f32(t, f32x8::splat(simd, start)), f32x8::splat(simd, end));
+                pixels = inside.select(piece.pixels::<OPAQUE>(simd, clamped), pixels);
+                open &= !(inside.to_bitmask() | 1 << lane);
+            }
+            *out = pixels.to_bytes().to_array();
+        }
+    }
+
+    /// The index of the piece that holds position `t`: the number of ends at or before it.
+    #[inline(always)]
+    fn find(&self, t: f32) -> usize {
+        if self.ends.len() <= 8 {
+            self.ends.iter().map(|end| usize::from(t >= *end)).sum()
+        } else {
+            self.ends.partition_point(|end| t >= *end)
+        }
+    }
+
+    #[inline(always)]
+    fn piece(&self, index: usize) -> Piece {
+        self.pieces.get(index).copied().unwrap_or(Piece { origin: 0.0, color: [0.0; 4], slope: [0.0; 4] })
+    }
+}
+
+/// The colour in a [`Piece`]'s units.
+fn scaled(color: Color, opaque: bool) -> [f32; 4] {
+    if opaque {
+        [color.r * 255.0 + 0.5, color.g * 255.0 + 0.5, color.b * 255.0 + 0.5, 255.5]
+    } else {
+        [color.r, color.g, color.b, color.a * 255.0]
+    }
+}
+
+/// A piece's coefficients in vectors.
+struct PieceLanes<S: Simd> {
+    origin: f32x8<S>,
+    color: [f32x8<S>; 4],
+    slope: [f32x8<S>; 4],
+}
+
+impl<S: Simd> PieceLanes<S> {
+    #[inline(always)]
+    fn splat(simd: S, piece: &Piece) -> Self {
+        let lanes = |v: [f32; 4]| {
+            [f32x8::splat(simd, v[0]), f32x8::splat(simd, v[1]), f32x8::splat(simd, v[2]), f32x8::splat(simd, v[3])]
+        };
+        Self { origin: f32x8::splat(simd, piece.origin), color: lanes(piece.color), slope: lanes(piece.slope) }
+    }
+
+    /// The pixels at the clamped positions `t`.
+    #[inline(always)]
+    fn pixels<const OPAQUE: bool>(&self, simd: S, t: f32x8<S>) -> u32x8<S> {
+        let offset = t - self.origin;
+        let r = self.color[0] + self.slope[0] * offset;
+        let g = self.color[1] + self.slope[1] * offset;
+        let b = self.color[2] + self.slope[2] * offset;
+        if OPAQUE {
+            // Between 0.5 and 255.5 but for the last bit: truncation cannot leave 0 ..= 255.
+            let (r, g, b) = (truncate_f32(r), truncate_f32(g), truncate_f32(b));
+            let rgb = r | (g << 8) | (b << 16) | i32x8::splat(simd, 255 << 24);
+            return rgb.bitcast();
+        }
+        let a = self.color[3] + self.slope[3] * offset;
+        let alpha = truncate_f32(a + 0.5);
+        // The last bit of an interpolated 1 must not lift a colour above its alpha.
+        let r = min_i32(truncate_f32(r * a + 0.5), alpha);
+        let g = min_i32(truncate_f32(g * a + 0.5), alpha);
+        let b = min_i32(truncate_f32(b * a + 0.5), alpha);
+        (r | (g << 8) | (b << 16) | (alpha << 24)).bitcast()
+    }
+}
+
+/// Positions past this have no fraction worth having; the clamp also catches NaN and infinities.
+const FAR: f32 = 4_194_304.0;
+
+#[inline(always)]
+fn repeat<S: Simd>(simd: S, positions: &mut [[f32; 8]]) {
+    for position in positions {
+        let t = f32x8::simd_from(simd, *position);
+        let t = min_f32(max_f32(t, f32x8::splat(simd, -FAR)), f32x8::splat(simd, FAR));
+        *position = (t - t.floor()).to_array();
+    }
+}
+
+#[inline(always)]
+fn reflect<S: Simd>(simd: S, positions: &mut [[f32; 8]]) {
+    for position in positions {
+        let t = f32x8::simd_from(simd, *position);
+        let t = min_f32(max_f32(t, f32x8::splat(simd, -FAR)), f32x8::splat(simd, FAR));
+        let u = t - (t * 0.5).floor() * 2.0;
+        *position = u.simd_gt(1.0).select(f32x8::splat(simd, 2.0) - u, u).to_array();
+    }
+}
