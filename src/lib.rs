@@ -1,6 +1,8 @@
 //! A CPU canvas for 2D and 3D.
 
 mod blend;
+#[cfg(feature = "codec")]
+mod codec;
 mod color;
 mod error;
 mod geom;
