@@ -3,8 +3,9 @@
 use super::render::{Renderer, Step};
 use super::{Settings, convert, shape};
 use crate::blend::BlendMode;
-use crate::canvas::{Canvas, Paint};
+use crate::canvas::Canvas;
 use crate::color::Color;
+use crate::display_list::Paint;
 use crate::geom::{Rect, Transform};
 use crate::style::Antialias;
 
@@ -57,7 +58,10 @@ pub(super) fn apply(outlines: &[Outline<'_>], settings: &Settings, canvas: &mut 
             Some((path, fill)) => {
                 canvas.transform(*transform);
                 let antialias = shape::antialias(path, settings);
-                canvas.clip_path(&convert::path(path.data()), convert::fill_rule(fill.rule()), antialias);
+                match convert::rectangle(path.data()) {
+                    Some(rect) => canvas.clip_rect(rect, antialias),
+                    None => canvas.clip_path(&convert::path(path.data()), convert::fill_rule(fill.rule()), antialias),
+                }
                 canvas.set_transform(outer);
             }
             None => canvas.clip_rect(Rect::from_xywh(0.0, 0.0, 0.0, 0.0), Antialias::None),

@@ -31,6 +31,15 @@ pub(super) fn path(path: &usvg::tiny_skia_path::Path) -> Path {
     out
 }
 
+/// The rectangle that a path is, with edges along the axes: usvg makes paths of them all.
+pub(super) fn rectangle(path: &usvg::tiny_skia_path::Path) -> Option<Rect> {
+    use usvg::tiny_skia_path::PathVerb::{Close, Line, Move};
+    let (&[Move, Line, Line, Line, Close], &[a, b, c, d]) = (path.verbs(), path.points()) else { return None };
+    let across = a.y == b.y && b.x == c.x && c.y == d.y && d.x == a.x;
+    let down = a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y;
+    (across || down).then(|| Rect::from_ltrb(a.x, a.y, c.x, c.y).normalized())
+}
+
 pub(super) fn fill_rule(rule: usvg::FillRule) -> FillRule {
     match rule {
         usvg::FillRule::NonZero => FillRule::NonZero,

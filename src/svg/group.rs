@@ -1,13 +1,14 @@
 //! Groups: transform, opacity, blend mode, clip path, mask.
 
 use super::clip::{self, Outline};
+use super::convert;
 use super::render::{Renderer, Step};
 use super::shape::{self, Effects};
 use super::warning::WarningKind;
-use super::convert;
 use crate::blend::BlendMode;
 use crate::canvas::Canvas;
-use crate::geom::Rect;
+use crate::geom::{Rect, Transform};
+use crate::style::Antialias;
 
 /// Begins a group and notes the steps that draw its children and end it.
 pub(super) fn draw<'t>(
@@ -51,6 +52,7 @@ fn begin_layer<'t>(
     if let Some(Some(outlines)) = &outlines {
         clip::apply(outlines, renderer.settings, canvas);
     }
+    bound(group, canvas);
     canvas.push_layer(group.opacity().get(), convert::blend_mode(group.blend_mode()));
     steps.push(Step::PopLayer);
     steps.extend(group.mask().map(Step::Mask));
@@ -58,6 +60,23 @@ fn begin_layer<'t>(
         steps.push(Step::Clip(clip));
     }
     steps.push(Step::Children(group, 0));
+}
+
+/// Clips to the whole pixels that the group's content can touch: a layer costs time for each of its pixels, drawn
+/// on or not.
+fn bound(group: &usvg::Group, canvas: &mut Canvas<'_>) {
+    // With a filter, the box is the filter's region, which does not bound what is drawn without it.
+    if !group.filters().is_empty() {
+        return;
+    }
+    let transform = canvas.current_transform();
+    // Soft edges, and a pixel against rounding.
+    let area = transform.map_rect(convert::rect(group.layer_bounding_box())).map(|area| area.outset(2.0).round_out());
+    if let Some(area) = area {
+        canvas.set_transform(Transform::IDENTITY);
+        canvas.clip_rect(area.to_rect(), Antialias::None);
+        canvas.set_transform(transform);
+    }
 }
 
 /// Clips to a rectangle in the current user space and notes the steps that draw a group's children inside it;

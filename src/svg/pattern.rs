@@ -8,6 +8,7 @@ use super::warning::WarningKind;
 use crate::canvas::Canvas;
 use crate::geom::Transform;
 use crate::paint::Pattern;
+use crate::render::RenderSettings;
 use crate::surface::Pixmap;
 
 /// The most pixels of a tile: 8192 × 4096, 128 MiB.
@@ -28,12 +29,12 @@ pub(super) struct Tile {
 }
 
 impl Renderer<'_> {
-    /// The pattern as a paint under the user-to-device transform `transform`. `None` paints nothing.
-    pub(super) fn pattern(&mut self, pattern: &Arc<usvg::Pattern>, transform: Transform) -> Option<Pattern> {
+    /// The pattern as a paint for the canvas's current transform. `None` paints nothing.
+    pub(super) fn pattern(&mut self, pattern: &Arc<usvg::Pattern>, canvas: &Canvas<'_>) -> Option<Pattern> {
         let own = convert::transform(pattern.transform());
         let rect = convert::rect(pattern.rect());
-        let size = self.tile_size(pattern, transform.pre_concat(own))?;
-        let image = self.tile(pattern, size)?;
+        let size = self.tile_size(pattern, canvas.current_transform().pre_concat(own))?;
+        let image = self.tile(pattern, size, canvas.settings())?;
         // The tile's sides are whole pixels; stretching it back to the rectangle keeps the period exact.
         let (width, height) = (size.0 as f32, size.1 as f32);
         Some(Pattern {
@@ -66,7 +67,12 @@ impl Renderer<'_> {
         Some((whole(fit.0), whole(fit.1)))
     }
 
-    fn tile(&mut self, pattern: &Arc<usvg::Pattern>, size: (u32, u32)) -> Option<Arc<Pixmap>> {
+    fn tile(
+        &mut self,
+        pattern: &Arc<usvg::Pattern>,
+        size: (u32, u32),
+        settings: RenderSettings,
+    ) -> Option<Arc<Pixmap>> {
         if let Some(tile) = self.tiles.iter().find(|tile| tile.size == size && Arc::ptr_eq(&tile.pattern, pattern)) {
             return Some(tile.image.clone());
         }
@@ -77,8 +83,9 @@ impl Renderer<'_> {
         if !self.count_layer() {
             return None;
         }
-        let canvas = if self.count_pixels(size.0, size.1) { Canvas::new(size.0, size.1).ok() } else { None };
-        let Some(mut canvas) = canvas else {
+        let fits = self.count_pixels(size.0, size.1);
+        let canvas = fits.then(|| Canvas::with_settings(size.0, size.1, settings).ok());
+        let Some(mut canvas) = canvas.flatten() else {
             self.warnings.add(WarningKind::PatternSize, pattern.id());
             return None;
         };

@@ -48,9 +48,7 @@ pub fn parse(bytes: &[u8], options: &usvg::Options<'_>) -> Result<usvg::Tree> {
         usvg::Error::InvalidSize => {
             Error::Format("the SVG has no valid size: width and height must be above 0".to_owned())
         }
-        usvg::Error::ElementsLimitReached => {
-            Error::Limit("the SVG has more than 1,000,000 elements".to_owned())
-        }
+        usvg::Error::ElementsLimitReached => Error::Limit("the SVG has more than 1,000,000 elements".to_owned()),
         error => Error::Format(format!("not an SVG: {error}")),
     })
 }

@@ -3,8 +3,9 @@
 use super::render::Renderer;
 use super::{Settings, convert};
 use crate::blend::BlendMode;
-use crate::canvas::{Canvas, Paint};
+use crate::canvas::Canvas;
 use crate::color::Color;
+use crate::display_list::Paint;
 use crate::geom::Point;
 use crate::paint::{GradientStop, LinearGradient, RadialGradient, Shader};
 use crate::style::Antialias;
@@ -93,7 +94,7 @@ impl Renderer<'_> {
                     stops(gradient),
                 )
             }),
-            usvg::Paint::Pattern(pattern) => Shader::Pattern(self.pattern(pattern, canvas.current_transform())?),
+            usvg::Paint::Pattern(pattern) => Shader::Pattern(self.pattern(pattern, canvas)?),
         };
         Some(
             Paint::new(shader)

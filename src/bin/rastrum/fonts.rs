@@ -50,12 +50,10 @@ fn any(font: &Font, database: &Database) -> Option<ID> {
         FontStyle::Oblique => Style::Oblique,
     };
     let weight = Weight(font.weight());
-    let found = database
-        .query(&Query { families: &families, weight, style, ..Query::default() })
-        .or_else(|| {
-            let name = &database.faces().next()?.families.first()?.0;
-            database.query(&Query { families: &[Family::Name(name)], weight, style, ..Query::default() })
-        });
+    let found = database.query(&Query { families: &families, weight, style, ..Query::default() }).or_else(|| {
+        let name = &database.faces().next()?.families.first()?.0;
+        database.query(&Query { families: &[Family::Name(name)], weight, style, ..Query::default() })
+    });
     let text = match found.and_then(|id| database.face(id)).and_then(|face| face.families.first()) {
         Some((name, _)) => format!("text is drawn in '{name}': none of its own fonts is there"),
         None => "text is left out: there are no fonts; try --font-dir or --font-file".to_owned(),

@@ -17,9 +17,7 @@ pub(crate) fn run(arguments: &ManArguments) -> Result<Outcome, Failure> {
             .clone(),
     };
     let mut text = Vec::new();
-    clap_mangen::Man::new(page)
-        .render(&mut text)
-        .map_err(|error| Failure::new(format!("man: {error}")))?;
+    clap_mangen::Man::new(page).render(&mut text).map_err(|error| Failure::new(format!("man: {error}")))?;
     report::print(&text)?;
     Ok(Outcome::Done)
 }

@@ -215,7 +215,10 @@ mod tests {
         assert_eq!(outputs(&["-"], None).unwrap(), ["-"]);
         assert_eq!(outputs(&["no/a.svg"], Some("-")).unwrap(), ["-"]);
         assert_eq!(outputs(&["no/a.svg"], Some("b.png")).unwrap(), ["b.png"]);
-        assert_eq!(outputs(&["no/a.svg", "b.svgz"], Some("{dir}/{stem}@2x.png")).unwrap(), ["no/a@2x.png", "./b@2x.png"]);
+        assert_eq!(
+            outputs(&["no/a.svg", "b.svgz"], Some("{dir}/{stem}@2x.png")).unwrap(),
+            ["no/a@2x.png", "./b@2x.png"]
+        );
         assert_eq!(outputs(&["-"], Some("{stem}.png")).unwrap(), ["stdin.png"]);
         assert_eq!(outputs(&["no/a.svg", "b.svg"], Some("out/")).unwrap(), ["out/a.png", "out/b.png"]);
     }

@@ -90,12 +90,7 @@ fn guarded(job: &Job, work: impl FnOnce() -> Result<Done, Failure>) -> Result<Do
 }
 
 /// Reads, parses, draws and writes one file.
-fn draw(
-    job: &Job,
-    arguments: &RenderArguments,
-    fonts: &Fonts<'_>,
-    settings: RenderSettings,
-) -> Result<Done, Failure> {
+fn draw(job: &Job, arguments: &RenderArguments, fonts: &Fonts<'_>, settings: RenderSettings) -> Result<Done, Failure> {
     let fail = |text: String| Failure::new(format!("{}: {text}", job.name()));
     let started = Instant::now();
     // A file that failed on this thread may have left some.
@@ -210,7 +205,8 @@ fn save(pixmap: &Pixmap, path: &Path, arguments: &RenderArguments) -> Result<(),
     let fail = |text: String| Failure::new(format!("{}: {text}", path.display()));
     // A single named file in a folder that is not there is more likely a slip than a wish.
     let is_pattern = arguments.output.as_ref().is_some_and(|output| {
-        output.to_str().is_some_and(|text| text.contains('{') || text.ends_with(['/', '\\'])) || Path::new(output).is_dir()
+        output.to_str().is_some_and(|text| text.contains('{') || text.ends_with(['/', '\\']))
+            || Path::new(output).is_dir()
     });
     if let (true, Some(folder)) = (is_pattern, path.parent()) {
         fs::create_dir_all(folder).map_err(|error| fail(format!("its folder cannot be made: {error}")))?;
