@@ -67,11 +67,7 @@ impl Color {
 
 /// `v` clamped to 0 ..= 1; NaN is 0.
 pub(crate) fn unit(v: f32) -> f32 {
-    if v > 0.0 {
-        if v < 1.0 { v } else { 1.0 }
-    } else {
-        0.0
-    }
+    if v > 0.0 { if v < 1.0 { v } else { 1.0 } } else { 0.0 }
 }
 
 fn to_u8(v: f32) -> u8 {

@@ -62,7 +62,9 @@ impl Transform {
     /// A rotation about `center` by `degrees`.
     pub fn from_rotate_at(degrees: f32, center: impl Into<Point>) -> Self {
         let c = center.into();
-        Self::from_translate(c.x, c.y).pre_concat(Self::from_rotate(degrees)).pre_concat(Self::from_translate(-c.x, -c.y))
+        Self::from_translate(c.x, c.y)
+            .pre_concat(Self::from_rotate(degrees))
+            .pre_concat(Self::from_translate(-c.x, -c.y))
     }
 
     /// A skew by the given angles.

@@ -53,6 +53,16 @@ pub(crate) fn truncate_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
     v.to_int()
 }
 
+/// The nearest integer, ties to even, of lanes within ±2^22.
+///
+/// Adding 1.5 · 2^23 leaves the rounded integer in the low bits of the mantissa: one addition and one
+/// subtraction at every level, where a native rounding instruction is missing from some.
+#[inline(always)]
+pub(crate) fn round_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
+    debug_assert!(v.to_array().iter().all(|lane| lane.abs() <= 4_194_304.0), "lane outside ±2^22");
+    (v + 12_582_912.0).bitcast::<i32x8<S>>() - 0x4b40_0000
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

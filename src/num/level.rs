@@ -80,25 +80,32 @@ macro_rules! dispatch {
         let best = fearless_simd::Level::new();
         match level {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            $crate::num::level::SimdLevel::Avx2 if let Some($simd) = best.as_avx2() => {
-                $simd.vectorize(#[inline(always)] || $body)
-            }
+            $crate::num::level::SimdLevel::Avx2 if let Some($simd) = best.as_avx2() => $simd.vectorize(
+                #[inline(always)]
+                || $body,
+            ),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            $crate::num::level::SimdLevel::Sse2 if let Some($simd) = best.as_sse2() => {
-                $simd.vectorize(#[inline(always)] || $body)
-            }
+            $crate::num::level::SimdLevel::Sse2 if let Some($simd) = best.as_sse2() => $simd.vectorize(
+                #[inline(always)]
+                || $body,
+            ),
             #[cfg(target_arch = "aarch64")]
-            $crate::num::level::SimdLevel::Neon if let Some($simd) = best.as_neon() => {
-                $simd.vectorize(#[inline(always)] || $body)
-            }
+            $crate::num::level::SimdLevel::Neon if let Some($simd) = best.as_neon() => $simd.vectorize(
+                #[inline(always)]
+                || $body,
+            ),
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-            $crate::num::level::SimdLevel::WasmSimd128 if let Some($simd) = best.as_wasm_simd128() => {
-                $simd.vectorize(#[inline(always)] || $body)
-            }
+            $crate::num::level::SimdLevel::WasmSimd128 if let Some($simd) = best.as_wasm_simd128() => $simd.vectorize(
+                #[inline(always)]
+                || $body,
+            ),
             _ => {
                 let _ = best;
                 let $simd = fearless_simd::Fallback::new();
-                $simd.vectorize(#[inline(always)] || $body)
+                $simd.vectorize(
+                    #[inline(always)]
+                    || $body,
+                )
             }
         }
     }};

@@ -1,5 +1,6 @@
 //! Numbers: fixed point, reproducible trigonometry, SIMD lanes and levels.
 
+pub(crate) mod fixed;
 pub(crate) mod lanes;
 pub(crate) mod level;
 pub(crate) mod trig;

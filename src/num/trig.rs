@@ -22,3 +22,8 @@ pub(crate) fn atan2(y: f64, x: f64) -> f64 {
 pub(crate) fn acos(x: f64) -> f64 {
     libm::acos(x)
 }
+
+/// e to the power of `x`.
+pub(crate) fn exp(x: f64) -> f64 {
+    libm::exp(x)
+}

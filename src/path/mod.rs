@@ -1,8 +1,18 @@
 //! Paths: lines and Bézier curves, and what is made of them.
 
 mod builder;
-mod stroke_style;
+mod curve;
+mod dash;
 pub(crate) mod flatten;
+mod hit;
+mod measure;
+mod outline;
+mod shapes;
+pub(crate) mod stroke;
+mod stroke_style;
+#[cfg(feature = "svg")]
+mod svg_data;
 
 pub use builder::{Path, Segment, Verb};
+pub use shapes::Radii;
 pub use stroke_style::{Dash, LineCap, LineJoin, Stroke};

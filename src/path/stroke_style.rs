@@ -29,12 +29,17 @@ pub enum LineJoin {
 }
 
 /// A dash pattern.
+///
+/// The ends of dashes have the stroke's caps; a dash without length is a dot or a square in the path's
+/// direction, and nothing under butt caps. A gap without length is none. On a closed subpath a last dash
+/// that reaches the start is joined to the first. A pattern of which more than a million dashes and gaps
+/// would be seen is drawn solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dash {
     /// Lengths of dashes and gaps in turn, in user space; an odd number of them is repeated once, as
     /// in SVG. A negative or non-finite length, or a sum of zero, makes the line solid.
     pub intervals: Arc<[f32]>,
-    /// How far into the pattern a subpath starts.
+    /// How far into the pattern each subpath starts, in user space; a non-finite one counts as 0.
     pub offset: f32,
 }
 

@@ -75,6 +75,11 @@ impl Pixmap {
         Self::with_limits(width, height, Limits::default())
     }
 
+    /// One transparent pixel: what is left where a picture was moved out.
+    pub(crate) fn placeholder() -> Self {
+        Self { width: 1, height: 1, data: vec![0; 4] }
+    }
+
     /// A transparent picture of a size checked against `limits`.
     ///
     /// # Errors
@@ -218,7 +223,9 @@ impl<'a> PixmapRef<'a> {
             let from = y as usize * self.stride + inside.left as usize * 4;
             let to = y.abs_diff(rect.top) as usize * stride + inside.left.abs_diff(rect.left) as usize * 4;
             let length = inside.width() as usize * 4;
-            if let (Some(source), Some(target)) = (self.data.get(from..from + length), out.data.get_mut(to..to + length)) {
+            if let (Some(source), Some(target)) =
+                (self.data.get(from..from + length), out.data.get_mut(to..to + length))
+            {
                 target.copy_from_slice(source);
             }
         }
@@ -276,6 +283,11 @@ impl<'a> PixmapMut<'a> {
         self.height
     }
 
+    /// The same view, for a shorter time.
+    pub fn reborrow(&mut self) -> PixmapMut<'_> {
+        PixmapMut { width: self.width, height: self.height, stride: self.stride, data: self.data }
+    }
+
     /// Bytes from one row to the next.
     pub fn stride(&self) -> usize {
         self.stride
@@ -299,7 +311,9 @@ impl<'a> PixmapMut<'a> {
             let from = row.abs_diff(y) as usize * source.stride + inside.left.abs_diff(x) as usize * 4;
             let to = row as usize * self.stride + inside.left as usize * 4;
             let length = inside.width() as usize * 4;
-            if let (Some(read), Some(write)) = (source.data.get(from..from + length), self.data.get_mut(to..to + length)) {
+            if let (Some(read), Some(write)) =
+                (source.data.get(from..from + length), self.data.get_mut(to..to + length))
+            {
                 write.copy_from_slice(read);
             }
         }

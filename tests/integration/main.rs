@@ -1,6 +1,11 @@
-//! Everything that is tested through the public surface, in one binary.
+//! Tests through the public API alone, against slow and obvious versions of the same.
+
+#[path = "../oracle/mod.rs"]
+mod oracle;
 
 #[cfg(feature = "cli")]
 mod cli;
+mod seeds_lines;
+mod seeds_polygons;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod svg;

@@ -1,0 +1,202 @@
+//! Eight pixels at a time, in sixteen-bit lanes.
+//!
+//! A vector of 32 bytes is eight RGBA pixels. Its even bytes (red, blue) and odd bytes (green, alpha)
+//! become one vector of 16-bit lanes each by a mask and a shift: nothing moves between lanes, and
+//! products of two components fit.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, u8x16, u8x32, u16x8, u16x16};
+
+use crate::surface::block::{MaskBlock, PixelBlock};
+
+/// Eight RGBA pixels: component k of pixel i is in lane 2i + ⌊k / 2⌋ of `even` or `odd`.
+#[derive(Clone, Copy)]
+pub(super) struct Words<S: Simd> {
+    /// Red and blue.
+    pub(super) even: u16x16<S>,
+    /// Green and alpha.
+    pub(super) odd: u16x16<S>,
+}
+
+impl<S: Simd> Words<S> {
+    #[inline(always)]
+    pub(super) fn from_bytes(bytes: u8x32<S>) -> Self {
+        let words: u16x16<S> = bytes.bitcast();
+        Self { even: words & 255, odd: words >> 8 }
+    }
+
+    /// The bytes again; every lane must be below 256.
+    #[inline(always)]
+    pub(super) fn to_bytes(self) -> u8x32<S> {
+        (self.even | (self.odd << 8)).bitcast()
+    }
+
+    /// Each pixel's alpha in both of its lanes.
+    #[inline(always)]
+    pub(super) fn alpha(self) -> u16x16<S> {
+        duplicate_odd(self.odd)
+    }
+}
+
+/// The odd lanes of `v`, each twice. The compiler joins the two moves into one shuffle (two at SSE2).
+#[inline(always)]
+pub(super) fn duplicate_odd<S: Simd>(v: u16x16<S>) -> u16x16<S> {
+    let odd = v.unzip_high(v);
+    odd.zip_low(odd)
+}
+
+/// ⌊v · 257 / 2^16⌋ per lane: with v = n + 128 it is n / 255 rounded to nearest, for n in 0 ..= 65,407.
+///
+/// There is no high half of a product in the portable vectors; but the widening product followed by
+/// the odd lanes is what every x86 compiler backend folds to that one instruction. Against shifts and
+/// adds this made source-over a third faster at AVX2 and SSE2.
+#[inline(always)]
+pub(super) fn quotient_255<S: Simd>(v: u16x16<S>) -> u16x16<S> {
+    let (low, high) = v.widening_mul(257);
+    let (low, high): (u16x16<S>, u16x16<S>) = (low.bitcast(), high.bitcast());
+    low.unzip_high(high)
+}
+
+/// v / 255 rounded to nearest, for v in 0 ..= 65,407.
+#[inline(always)]
+pub(super) fn div255<S: Simd>(v: u16x16<S>) -> u16x16<S> {
+    quotient_255(v + 128)
+}
+
+/// Sixteen mask bytes as lanes for the two halves of a row: each byte in both lanes of its pixel.
+#[inline(always)]
+pub(super) fn mask_words<S: Simd>(simd: S, mask: &[u8; 16]) -> [u16x16<S>; 2] {
+    let mask = u8x16::load_array_ref(simd, mask);
+    if has_byte_shuffle(simd) {
+        // Indices 16 and up read whatever the level gives, hence the `& 255`, which costs nothing:
+        // index 255 is zero at AVX2, so the compiler knows. One load and one shuffle a half.
+        let both = u8x32::block_splat(mask);
+        let low = u8x32::load_array(simd, const { pixel_indices(0) });
+        let high = u8x32::load_array(simd, const { pixel_indices(8) });
+        let low: u16x16<S> = both.swizzle_dyn_within_blocks(low).bitcast();
+        let high: u16x16<S> = both.swizzle_dyn_within_blocks(high).bitcast();
+        [low & 255, high & 255]
+    } else {
+        let zero = u8x16::splat(simd, 0);
+        let low: u16x8<S> = mask.zip_low(zero).bitcast();
+        let high: u16x8<S> = mask.zip_high(zero).bitcast();
+        [low.zip_low(low).combine(low.zip_high(low)), high.zip_low(high).combine(high.zip_high(high))]
+    }
+}
+
+/// Whether the level moves bytes by a vector of indices in one instruction. Known when compiled.
+#[inline(always)]
+fn has_byte_shuffle<S: Simd>(simd: S) -> bool {
+    match simd.level() {
+        Level::Fallback(_) => false,
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse2(_) => false,
+        _ => true,
+    }
+}
+
+/// Shuffle indices that put byte `first + i` into the low byte of both lanes of pixel i.
+const fn pixel_indices(first: u8) -> [u8; 32] {
+    let mut indices = [255; 32];
+    let mut lane = 0;
+    while lane < 16 {
+        indices[2 * lane] = first + (lane / 2) as u8;
+        lane += 1;
+    }
+    indices
+}
+
+/// (from · (255 − mask) + to · mask) / 255, rounded once. Mask 0 gives `from`, 255 gives `to`.
+#[inline(always)]
+pub(super) fn mix<S: Simd>(from: Words<S>, to: Words<S>, mask: u16x16<S>) -> Words<S> {
+    let rest = mask ^ 255;
+    Words { even: div255(from.even * rest + to.even * mask), odd: div255(from.odd * rest + to.odd * mask) }
+}
+
+/// The smaller byte.
+#[inline(always)]
+#[expect(clippy::disallowed_methods, reason = "integer minimum is the same at every level")]
+pub(super) fn min_u8<S: Simd>(a: u8x32<S>, b: u8x32<S>) -> u8x32<S> {
+    a.min(b)
+}
+
+/// The pixels with components above their alpha lowered to it, as words, and the alpha by lane.
+#[inline(always)]
+pub(super) fn clamped<S: Simd>(bytes: u8x32<S>) -> (Words<S>, u16x16<S>) {
+    let alpha = Words::from_bytes(bytes).alpha();
+    let limit: u8x32<S> = (alpha | (alpha << 8)).bitcast();
+    (Words::from_bytes(min_u8(bytes, limit)), alpha)
+}
+
+/// Replaces every pixel of `dst` by a mix, by `mask`, of itself and `blend(dst, src)`, eight pixels at a time.
+#[inline(always)]
+pub(super) fn mix_block<S: Simd>(
+    simd: S,
+    dst: &mut PixelBlock,
+    src: &PixelBlock,
+    mask: &MaskBlock,
+    blend: impl Fn(u8x32<S>, u8x32<S>) -> Words<S>,
+) {
+    for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
+        let masks = mask_words(simd, mask);
+        let halves = dst.as_chunks_mut::<32>().0.iter_mut().zip(src.as_chunks::<32>().0);
+        for ((dst, src), mask) in halves.zip(masks) {
+            let below = u8x32::load_array_ref(simd, dst);
+            let blended = blend(below, u8x32::load_array_ref(simd, src));
+            mix(Words::from_bytes(below), blended, mask).to_bytes().store_array(dst);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+
+    #[test]
+    fn div255_rounds_to_nearest_over_its_range() {
+        for level in SimdLevel::available() {
+            dispatch!(level, simd => {
+                for n in 0..=65_407_u16 {
+                    let lanes = div255(u16x16::splat(simd, n)).to_array();
+                    assert_eq!(lanes, [((u32::from(n) * 2 + 255) / 510) as u16; 16], "{n} at {level:?}");
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn words_keep_every_byte_in_its_place() {
+        let bytes: [u8; 32] = std::array::from_fn(|i| 3 + 7 * i as u8);
+        let mask: [u8; 16] = std::array::from_fn(|i| 255 - 13 * i as u8);
+        for level in SimdLevel::available() {
+            dispatch!(level, simd => {
+                let words = Words::from_bytes(u8x32::load_array_ref(simd, &bytes));
+                assert_eq!(words.to_bytes().to_array(), bytes, "{level:?}");
+                let alpha = words.alpha().to_array();
+                let masks = mask_words(simd, &mask).map(|half| half.to_array());
+                for pixel in 0..8 {
+                    let expected = u16::from(bytes[4 * pixel + 3]);
+                    assert_eq!(alpha[2 * pixel..2 * pixel + 2], [expected; 2], "{level:?}");
+                    for (half, lanes) in masks.iter().enumerate() {
+                        let expected = u16::from(mask[8 * half + pixel]);
+                        assert_eq!(lanes[2 * pixel..2 * pixel + 2], [expected; 2], "{level:?}");
+                    }
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn colour_above_alpha_is_lowered_to_it() {
+        let bytes: [u8; 32] = std::array::from_fn(|i| [200, 90, 100, 100][i % 4]);
+        for level in SimdLevel::available() {
+            dispatch!(level, simd => {
+                let (words, alpha) = clamped(u8x32::load_array_ref(simd, &bytes));
+                let expected: [u8; 32] = std::array::from_fn(|i| [100, 90, 100, 100][i % 4]);
+                assert_eq!(words.to_bytes().to_array(), expected, "{level:?}");
+                assert_eq!(alpha.to_array(), [100; 16], "{level:?}");
+            });
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! Filling and stroking.
+
+use super::Canvas;
+use crate::blend::BlendMode;
+use crate::color::Color;
+use crate::display_list::{ClipId, Command, DisplayList, Draw, Geometry, Paint, Shadow};
+use crate::geom::{IntRect, Point, Rect, Transform};
+use crate::paint::PreparedPaint;
+use crate::path::{LineCap, LineJoin, Path, Radii, Stroke};
+use crate::style::{Antialias, FillRule};
+
+/// Blurs wider than this many pixels of standard deviation are cut to it.
+const MAX_DEVIATION: f32 = 1000.0;
+
+impl Canvas<'_> {
+    /// Replaces every pixel within the clip by `color`, transparent ones included.
+    pub fn clear(&mut self, color: Color) {
+        let shadow = self.state.shadow.take();
+        self.fill(Paint::new(color).with_blend_mode(BlendMode::Source));
+        self.state.shadow = shadow;
+    }
+
+    /// Paints every pixel within the clip.
+    pub fn fill(&mut self, paint: impl Into<Paint>) {
+        let bounds = self.state.bounds;
+        self.draw(paint.into(), |_| Some((Geometry::Bounds, bounds)));
+    }
+
+    /// Fills the inside of a path.
+    pub fn fill_path(&mut self, path: &Path, rule: FillRule, paint: impl Into<Paint>) {
+        self.draw(paint.into(), |canvas| canvas.record_fill(path, rule));
+    }
+
+    /// Strokes a path.
+    pub fn stroke_path(&mut self, path: &Path, stroke: &Stroke, paint: impl Into<Paint>) {
+        let paint = paint.into();
+        if stroke.width == 0.0 && paint.antialias == Antialias::None && stroke.dash.is_none() {
+            self.draw(paint, |canvas| canvas.record_pixel_outline(path));
+        } else {
+            self.draw(paint, |canvas| canvas.record_stroke(path, stroke));
+        }
+    }
+
+    /// Fills a rectangle; one with negative width or height as if its edges were swapped.
+    pub fn fill_rect(&mut self, rect: Rect, paint: impl Into<Paint>) {
+        let mut path = self.take_scratch();
+        path.rect(rect);
+        self.fill_path(&path, FillRule::NonZero, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Strokes a rectangle's outline.
+    pub fn stroke_rect(&mut self, rect: Rect, stroke: &Stroke, paint: impl Into<Paint>) {
+        let mut path = self.take_scratch();
+        path.rect(rect);
+        self.stroke_path(&path, stroke, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Makes the pixels of a rectangle transparent.
+    pub fn clear_rect(&mut self, rect: Rect) {
+        let shadow = self.state.shadow.take();
+        self.fill_rect(rect, Paint::new(Color::TRANSPARENT).with_blend_mode(BlendMode::Clear));
+        self.state.shadow = shadow;
+    }
+
+    /// Fills a rectangle with rounded corners.
+    pub fn fill_round_rect(&mut self, rect: Rect, radii: impl Into<Radii>, paint: impl Into<Paint>) {
+        let mut path = self.take_scratch();
+        path.round_rect(rect, radii);
+        self.fill_path(&path, FillRule::NonZero, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Strokes a rectangle with rounded corners.
+    pub fn stroke_round_rect(&mut self, rect: Rect, radii: impl Into<Radii>, stroke: &Stroke, paint: impl Into<Paint>) {
+        let mut path = self.take_scratch();
+        path.round_rect(rect, radii);
+        self.stroke_path(&path, stroke, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Fills a circle.
+    pub fn fill_circle(&mut self, center: impl Into<Point>, radius: f32, paint: impl Into<Paint>) {
+        self.fill_ellipse(center, radius, radius, paint);
+    }
+
+    /// Strokes a circle.
+    pub fn stroke_circle(&mut self, center: impl Into<Point>, radius: f32, stroke: &Stroke, paint: impl Into<Paint>) {
+        self.stroke_ellipse(center, radius, radius, stroke, paint);
+    }
+
+    /// Fills an ellipse with the given horizontal and vertical radius.
+    pub fn fill_ellipse(&mut self, center: impl Into<Point>, radius_x: f32, radius_y: f32, paint: impl Into<Paint>) {
+        let mut path = self.take_scratch();
+        path.ellipse(center, radius_x, radius_y);
+        self.fill_path(&path, FillRule::NonZero, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Strokes an ellipse with the given horizontal and vertical radius.
+    pub fn stroke_ellipse(
+        &mut self,
+        center: impl Into<Point>,
+        radius_x: f32,
+        radius_y: f32,
+        stroke: &Stroke,
+        paint: impl Into<Paint>,
+    ) {
+        let mut path = self.take_scratch();
+        path.ellipse(center, radius_x, radius_y);
+        self.stroke_path(&path, stroke, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Strokes a line.
+    pub fn draw_line(
+        &mut self,
+        from: impl Into<Point>,
+        to: impl Into<Point>,
+        stroke: &Stroke,
+        paint: impl Into<Paint>,
+    ) {
+        let mut path = self.take_scratch();
+        path.move_to(from).line_to(to);
+        self.stroke_path(&path, stroke, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Strokes an open chain of lines.
+    pub fn draw_polyline(&mut self, points: &[Point], stroke: &Stroke, paint: impl Into<Paint>) {
+        let mut path = self.take_scratch();
+        path.polyline(points);
+        self.stroke_path(&path, stroke, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Fills a polygon; it is closed by a line from its last to its first point.
+    pub fn fill_polygon(&mut self, points: &[Point], rule: FillRule, paint: impl Into<Paint>) {
+        let mut path = self.take_scratch();
+        path.polygon(points);
+        self.fill_path(&path, rule, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Strokes a closed polygon.
+    pub fn stroke_polygon(&mut self, points: &[Point], stroke: &Stroke, paint: impl Into<Paint>) {
+        let mut path = self.take_scratch();
+        path.polygon(points);
+        self.stroke_path(&path, stroke, paint);
+        self.keep_scratch(path);
+    }
+
+    /// Whether a device point lies inside a path under the current transform. The clip does not matter.
+    pub fn is_point_in_path(&self, path: &Path, rule: FillRule, point: impl Into<Point>) -> bool {
+        self.state.transform.invert().is_some_and(|inverse| path.contains(inverse.map(point.into()), rule))
+    }
+
+    /// Whether a device point lies on a path's stroke under the current transform. The clip does not matter.
+    pub fn is_point_in_stroke(&self, path: &Path, stroke: &Stroke, point: impl Into<Point>) -> bool {
+        self.state.transform.invert().is_some_and(|inverse| path.stroke_contains(inverse.map(point.into()), stroke))
+    }
+
+    /// Records what `geometry` records, with its shadow before it.
+    pub(super) fn draw(
+        &mut self,
+        paint: Paint,
+        geometry: impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>,
+    ) {
+        let mut geometry = geometry;
+        if self.state.bounds.is_empty() || paint.blend_mode == BlendMode::Destination {
+            return;
+        }
+        if let Some(shadow) = self.state.shadow {
+            self.draw_shadow(shadow, &paint, &mut geometry);
+        }
+        let Some((geometry, bounds)) = geometry(self) else { return };
+        let bounds = bounds.intersect(self.state.bounds);
+        if bounds.is_empty() {
+            return;
+        }
+        let prepared = PreparedPaint::new(&paint.shader, self.state.transform, paint.opacity);
+        if matches!(prepared, PreparedPaint::Nothing) && paint.blend_mode == BlendMode::SourceOver {
+            return;
+        }
+        let index = self.list.paints.len() as u32;
+        self.list.paints.push(prepared);
+        self.list.commands.push(Command::Draw(Draw {
+            geometry,
+            paint: index,
+            antialias: paint.antialias,
+            blend_mode: paint.blend_mode,
+            clip: self.state.clip,
+            bounds,
+        }));
+    }
+
+    /// Records the shadow of a draw: the same draw in a recording of its own, on a surface that reaches as far as
+    /// the blur.
+    fn draw_shadow(
+        &mut self,
+        shadow: super::Shadow,
+        paint: &Paint,
+        geometry: &mut dyn FnMut(&mut Self) -> Option<(Geometry, IntRect)>,
+    ) {
+        let finite = shadow.offset_x.is_finite() && shadow.offset_y.is_finite() && shadow.deviation.is_finite();
+        if !finite || shadow.color.a <= 0.0 || shadow.color.a.is_nan() {
+            return;
+        }
+        let deviation = shadow.deviation.clamp(0.0, MAX_DEVIATION);
+        let offset = |v: f32| v.round().clamp(-1e6, 1e6) as i32;
+        let (dx, dy) = (offset(shadow.offset_x), offset(shadow.offset_y));
+        let margin = (deviation * 3.0).ceil() as i32 + 1;
+        let visible = self.state.bounds;
+        let outer = self.state;
+        let outer_list = std::mem::take(&mut self.list);
+        // Where the draw itself lies, without the clip.
+        self.state.clip = ClipId::NONE;
+        self.state.shadow = None;
+        let reach = IntRect::from_ltrb(
+            visible.left - dx - margin,
+            visible.top - dy - margin,
+            visible.right - dx + margin,
+            visible.bottom - dy + margin,
+        );
+        self.state.bounds = reach;
+        let extent = geometry(self).map_or(IntRect::EMPTY, |(_, bounds)| bounds.intersect(reach));
+        let region = IntRect::from_ltrb(
+            extent.left.saturating_sub(margin),
+            extent.top.saturating_sub(margin),
+            extent.right.saturating_add(margin),
+            extent.bottom.saturating_add(margin),
+        )
+        .intersect(reach);
+        self.list = DisplayList::default();
+        if !extent.is_empty() && !region.is_empty() {
+            let shift = Transform::from_translate(-(region.left as f32), -(region.top as f32));
+            self.state.transform = outer.transform.post_concat(shift);
+            self.state.bounds = IntRect::from_xywh(0, 0, region.width(), region.height());
+            let plain = Paint { blend_mode: BlendMode::SourceOver, ..paint.clone() };
+            self.draw(plain, |canvas: &mut Self| geometry(canvas));
+        }
+        let list = std::mem::replace(&mut self.list, outer_list);
+        self.state = outer;
+        let bounds = IntRect::from_ltrb(region.left + dx, region.top + dy, region.right + dx, region.bottom + dy);
+        let bounds = bounds.intersect(visible);
+        if list.commands.is_empty() || bounds.is_empty() {
+            return;
+        }
+        self.list.commands.push(Command::Shadow(Shadow {
+            list: Box::new(list),
+            region,
+            offset: (dx, dy),
+            deviation,
+            color: shadow.color,
+            blend_mode: paint.blend_mode,
+            clip: self.state.clip,
+            bounds,
+        }));
+    }
+
+    /// Stores a path's outline, with the device pixels that filling it can touch.
+    pub(super) fn record_fill(&mut self, path: &Path, rule: FillRule) -> Option<(Geometry, IntRect)> {
+        let bounds = self.device_bounds(path, 0.0)?;
+        let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
+        Some((Geometry::Fill { verbs, points, transform: self.state.transform, rule }, bounds))
+    }
+
+    fn record_stroke(&mut self, path: &Path, stroke: &Stroke) -> Option<(Geometry, IntRect)> {
+        if !(stroke.width >= 0.0 && stroke.width.is_finite()) {
+            return None;
+        }
+        // How far from the path the pen reaches: half its width, more at mitres and square caps.
+        let mut reach = 1.0_f32;
+        if matches!(stroke.join, LineJoin::Miter | LineJoin::MiterClip) {
+            // Written so that a limit that is not a number counts as 1.
+            reach = if stroke.miter_limit > reach { stroke.miter_limit } else { reach };
+        }
+        if stroke.cap == LineCap::Square && reach < std::f32::consts::SQRT_2 {
+            reach = std::f32::consts::SQRT_2;
+        }
+        // A hairline's width is in device pixels.
+        let reach = if stroke.width == 0.0 { reach } else { stroke.width * reach };
+        let bounds = self.device_bounds(path, reach)?;
+        let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
+        let style = self.list.strokes.len() as u32;
+        self.list.strokes.push(stroke.clone());
+        Some((Geometry::Stroke { verbs, points, transform: self.state.transform, style }, bounds))
+    }
+
+    /// The device pixels that a path can touch when it is drawn with a pen that reaches so far in user space;
+    /// `None` if that is not finite or outside the clip.
+    pub(super) fn device_bounds(&self, path: &Path, reach: f32) -> Option<IntRect> {
+        let transform = self.state.transform;
+        if !transform.is_finite() {
+            return None;
+        }
+        let scale = transform.scale_range().0;
+        let margin = if scale > 1.0 { reach * scale } else { reach };
+        let device = transform.map_rect(path.control_bounds()?)?;
+        // One pixel more: flattening and 24.8 rounding move points by less.
+        let bounds = device.outset(margin + 1.0).round_out();
+        (!bounds.intersect(self.state.bounds).is_empty()).then_some(bounds)
+    }
+
+    fn take_scratch(&mut self) -> Path {
+        let mut path = std::mem::take(&mut self.scratch);
+        path.clear();
+        path
+    }
+
+    fn keep_scratch(&mut self, path: Path) {
+        self.scratch = path;
+    }
+}

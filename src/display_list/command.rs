@@ -1,0 +1,172 @@
+//! Commands and the arenas that hold their data.
+
+use std::sync::Arc;
+
+use crate::blend::BlendMode;
+use crate::geom::{IntRect, Point, Transform};
+use crate::paint::PreparedPaint;
+use crate::path::{Stroke, Verb};
+use crate::style::{Antialias, FillRule};
+use crate::surface::{Mask, MaskKind};
+
+/// A run of pixels in one row: y, and columns start ≤ x < end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Span {
+    pub(crate) y: i32,
+    pub(crate) start: i32,
+    pub(crate) end: i32,
+}
+
+/// What a draw covers.
+#[derive(Clone, Debug)]
+pub(crate) enum Geometry {
+    /// The inside of an outline.
+    Fill {
+        /// Where the outline lies in [`DisplayList::verbs`].
+        verbs: (u32, u32),
+        /// Where it lies in [`DisplayList::points`].
+        points: (u32, u32),
+        /// From its space to device pixels.
+        transform: Transform,
+        rule: FillRule,
+    },
+    /// The stroke of an outline; `style` indexes [`DisplayList::strokes`].
+    Stroke { verbs: (u32, u32), points: (u32, u32), transform: Transform, style: u32 },
+    /// Whole pixels: a range of [`DisplayList::spans`].
+    Spans((u32, u32)),
+    /// All pixels within the draw's bounds.
+    Bounds,
+}
+
+/// Names a clip; [`ClipId::NONE`] clips to the bounds alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ClipId(pub(crate) u32);
+
+impl ClipId {
+    pub(crate) const NONE: Self = Self(u32::MAX);
+}
+
+/// What a clip lets through.
+#[derive(Clone, Debug)]
+pub(crate) enum ClipKind {
+    /// What a draw of the geometry would cover.
+    Geometry { geometry: Geometry, antialias: Antialias },
+    /// A mask whose top left lies at a device pixel; nothing outside it.
+    Mask { mask: Arc<Mask>, x: i32, y: i32 },
+}
+
+/// A clip, on top of another.
+#[derive(Clone, Debug)]
+pub(crate) struct ClipNode {
+    pub(crate) parent: ClipId,
+    pub(crate) kind: ClipKind,
+    /// The device pixels that it and its parents can let through.
+    pub(crate) bounds: IntRect,
+}
+
+/// One shape.
+#[derive(Clone, Debug)]
+pub(crate) struct Draw {
+    pub(crate) geometry: Geometry,
+    /// Indexes [`DisplayList::paints`].
+    pub(crate) paint: u32,
+    pub(crate) antialias: Antialias,
+    pub(crate) blend_mode: BlendMode,
+    pub(crate) clip: ClipId,
+    /// The device pixels that it may touch: the clip's bounds.
+    pub(crate) bounds: IntRect,
+}
+
+/// The start of a layer.
+#[derive(Clone, Debug)]
+pub(crate) struct LayerStart {
+    /// The device pixels that it holds.
+    pub(crate) bounds: IntRect,
+    pub(crate) opacity: u8,
+    pub(crate) blend_mode: BlendMode,
+    /// What clips the layer as a whole, when it is drawn.
+    pub(crate) clip: ClipId,
+}
+
+/// A blurred, tinted, moved copy of what a list draws.
+#[derive(Clone, Debug)]
+pub(crate) struct Shadow {
+    /// What casts it, moved so that `region` starts at (0, 0).
+    pub(crate) list: Box<DisplayList>,
+    /// The device pixels from which the shadow is made.
+    pub(crate) region: IntRect,
+    /// In device pixels.
+    pub(crate) offset: (i32, i32),
+    /// The Gaussian's standard deviation, in device pixels.
+    pub(crate) deviation: f32,
+    /// Straight RGBA.
+    pub(crate) color: crate::color::Color,
+    pub(crate) blend_mode: BlendMode,
+    pub(crate) clip: ClipId,
+    pub(crate) bounds: IntRect,
+}
+
+/// One step of a recording.
+#[derive(Clone, Debug)]
+pub(crate) enum Command {
+    Draw(Draw),
+    /// Makes the clip known to the bands; its coverage is computed where a draw uses it.
+    Clip(ClipId),
+    BeginLayer(LayerStart),
+    EndLayer(LayerStart),
+    /// What follows becomes a mask for the layer below.
+    BeginMask(IntRect),
+    EndMask(IntRect, MaskKind),
+    Shadow(Shadow),
+}
+
+/// A recording.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DisplayList {
+    pub(crate) commands: Vec<Command>,
+    pub(crate) verbs: Vec<Verb>,
+    pub(crate) points: Vec<Point>,
+    pub(crate) spans: Vec<Span>,
+    pub(crate) strokes: Vec<Stroke>,
+    pub(crate) paints: Vec<PreparedPaint>,
+    pub(crate) clips: Vec<ClipNode>,
+}
+
+impl DisplayList {
+    /// Removes everything and keeps the memory.
+    pub(crate) fn clear(&mut self) {
+        self.commands.clear();
+        self.verbs.clear();
+        self.points.clear();
+        self.spans.clear();
+        self.strokes.clear();
+        self.paints.clear();
+        self.clips.clear();
+    }
+
+    /// Stores an outline; the ranges name its verbs and points. Beyond 2^32 of either, an empty one.
+    pub(crate) fn add_outline(&mut self, verbs: &[Verb], points: &[Point]) -> ((u32, u32), (u32, u32)) {
+        let ends = (self.verbs.len() + verbs.len(), self.points.len() + points.len());
+        if u32::try_from(ends.0).is_err() || u32::try_from(ends.1).is_err() {
+            return ((0, 0), (0, 0));
+        }
+        let ranges =
+            ((self.verbs.len() as u32, ends.0 as u32), (self.points.len() as u32, ends.1 as u32));
+        self.verbs.extend_from_slice(verbs);
+        self.points.extend_from_slice(points);
+        ranges
+    }
+
+    /// The clip with the given name; `None` for [`ClipId::NONE`].
+    pub(crate) fn clip(&self, id: ClipId) -> Option<&ClipNode> {
+        self.clips.get(id.0 as usize)
+    }
+
+    /// The verbs and points of an outline.
+    pub(crate) fn outline(&self, verbs: (u32, u32), points: (u32, u32)) -> (&[Verb], &[Point]) {
+        (
+            self.verbs.get(verbs.0 as usize..verbs.1 as usize).unwrap_or(&[]),
+            self.points.get(points.0 as usize..points.1 as usize).unwrap_or(&[]),
+        )
+    }
+}

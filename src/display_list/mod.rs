@@ -1,0 +1,7 @@
+//! The recording: what a canvas was told to draw, in order.
+
+mod command;
+mod paint;
+
+pub(crate) use command::{ClipKind, ClipNode, ClipId, Command, DisplayList, Draw, Geometry, LayerStart, Shadow, Span};
+pub use paint::{ImagePaint, Paint};

@@ -1,0 +1,3 @@
+//! Effects on whole surfaces.
+
+pub(crate) mod blur;

@@ -1,0 +1,198 @@
+//! Exact coverage where edges meet inside a pixel.
+//!
+//! Summed areas are exact for a pixel that one edge passes through. Where two do, the sum knows how much
+//! each covers, not how much both do: the fill rule then has to be applied to the windings before
+//! the areas are added. This is done for whole rows of a strip in which some pixel is touched twice:
+//! the row is cut at edge ends and at crossings into slabs in which the edges keep their order, the rule
+//! picks the edges that separate inside from outside, and those alone are accumulated again.
+
+use super::cell::StripCells;
+use super::edge::{Edge, EdgeLine};
+use super::sample::inside;
+use crate::num::fixed;
+use crate::style::FillRule;
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
+
+/// At most so many edge pieces are sorted per row: with many edges in a row, the slabs get coarser
+/// (never fewer than [`FEWEST_SLABS`]), so that a row's cost stays linear in its edges.
+const PIECES_PER_ROW: usize = 8192;
+const FEWEST_SLABS: usize = 4;
+
+/// Working memory.
+#[derive(Debug, Default)]
+pub(crate) struct ExactScratch {
+    /// For each row of the strip the edges that it crosses.
+    rows: [Vec<Part>; BLOCK_HEIGHT],
+    ends: Vec<i32>,
+    active: Vec<Crossing>,
+}
+
+/// The part of an edge in one row.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    line: EdgeLine,
+    y0: i32,
+    y1: i32,
+    winding: i32,
+}
+
+/// A part in one slab: where it enters at the top and leaves at the bottom.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    top_x: i32,
+    bottom_x: i32,
+    part: Part,
+}
+
+/// Replaces the cells of rows in which some pixel is touched twice by exact ones. `top` is the strip's
+/// top in fixed point; `edges` are all that were added to it.
+pub(crate) fn resolve(
+    cells: &mut StripCells<'_>,
+    edges: &[Edge],
+    top: i32,
+    rule: FillRule,
+    scratch: &mut ExactScratch,
+) {
+    let rows = take_touched(cells);
+    if rows == 0 {
+        return;
+    }
+    clear_rows(cells, rows);
+    scratch.rows.iter_mut().for_each(Vec::clear);
+    for edge in edges {
+        let (x0, y0, x1, y1, winding) = edge.downward();
+        let first = ((y0 - top) >> fixed::SHIFT).max(0);
+        let last = ((y1 - 1 - top) >> fixed::SHIFT).min(BLOCK_HEIGHT as i32 - 1);
+        if first > last {
+            continue;
+        }
+        let line = EdgeLine::new(x0, y0, x1, y1);
+        for row in first..=last {
+            if rows >> row & 1 == 1 {
+                let row_top = top + (row << fixed::SHIFT);
+                let part = Part { line, y0: y0.max(row_top), y1: y1.min(row_top + fixed::ONE), winding };
+                if let Some(list) = scratch.rows.get_mut(row as usize) {
+                    list.push(part);
+                }
+            }
+        }
+    }
+    for (row, parts) in scratch.rows.iter().enumerate() {
+        if rows >> row & 1 == 1 {
+            resolve_row(cells, row, parts, rule, &mut scratch.ends, &mut scratch.active);
+        }
+    }
+}
+
+/// The rows with a pixel that two edges touch; clears the marks.
+fn take_touched(cells: &mut StripCells<'_>) -> u8 {
+    let mut rows = 0;
+    for_occupied(cells.occupied, |block| {
+        let start = block * BLOCK_WIDTH;
+        for column in cells.touched.get_mut(start..start + BLOCK_WIDTH).unwrap_or(&mut []) {
+            let [once, twice] = column;
+            rows |= *twice;
+            (*once, *twice) = (0, 0);
+        }
+    });
+    rows
+}
+
+/// Sets the cells of the given rows to zero.
+fn clear_rows(cells: &mut StripCells<'_>, rows: u8) {
+    let mut keep = [0; BLOCK_HEIGHT];
+    for (row, keep) in keep.iter_mut().enumerate() {
+        *keep = if rows >> row & 1 == 1 { 0 } else { -1 };
+    }
+    for_occupied(cells.occupied, |block| {
+        let start = block * BLOCK_WIDTH;
+        for column in cells.columns.get_mut(start..start + BLOCK_WIDTH).unwrap_or(&mut []) {
+            for (value, keep) in column.iter_mut().zip(keep) {
+                *value &= keep;
+            }
+        }
+    });
+}
+
+fn for_occupied(occupied: &[u64], mut f: impl FnMut(usize)) {
+    for (index, word) in occupied.iter().enumerate() {
+        let mut bits = *word;
+        while bits != 0 {
+            f(index * 64 + bits.trailing_zeros() as usize);
+            bits &= bits - 1;
+        }
+    }
+}
+
+fn resolve_row(
+    cells: &mut StripCells<'_>,
+    row: usize,
+    parts: &[Part],
+    rule: FillRule,
+    ends: &mut Vec<i32>,
+    active: &mut Vec<Crossing>,
+) {
+    ends.clear();
+    ends.extend(parts.iter().flat_map(|part| [part.y0, part.y1]));
+    ends.sort_unstable();
+    ends.dedup();
+    let thinnest = (fixed::ONE as usize * parts.len() / PIECES_PER_ROW).clamp(1, fixed::ONE as usize / FEWEST_SLABS) as i32;
+    let mut rest = &ends[..];
+    while let [top, after @ ..] = rest {
+        let Some(bottom) = after.iter().find(|y| **y - top >= thinnest).or(after.last()).copied() else { break };
+        rest = &rest[rest.iter().position(|y| *y == bottom).unwrap_or(rest.len())..];
+        let mut top = *top;
+        while top < bottom {
+            // Where ends closer together than the thinnest slab are passed over, the parts that cross the
+            // slab's middle stand for it: their windings close.
+            let middle = top + (bottom - top) / 2;
+            active.clear();
+            for part in parts.iter().filter(|part| part.y0 <= middle && middle < part.y1) {
+                let (y0, y1) = (part.y0.max(top), part.y1.min(bottom));
+                active.push(Crossing { top_x: part.line.x_at(y0), bottom_x: part.line.x_at(y1), part: *part });
+            }
+            active.sort_unstable_by_key(|c| (c.top_x, c.bottom_x));
+            let cut = first_crossing(active, top, bottom, thinnest);
+            if cut < bottom {
+                let middle = top + (cut - top) / 2;
+                active.retain(|c| c.part.y0 <= middle && middle < c.part.y1);
+                for crossing in active.iter_mut() {
+                    crossing.bottom_x = crossing.part.line.x_at(cut.min(crossing.part.y1));
+                }
+            }
+            add_slab(cells, row, active, top, cut, rule);
+            top = cut;
+        }
+    }
+}
+
+/// Where the first two neighbours change their order, or `bottom`. Never less than `thinnest` below `top`.
+fn first_crossing(active: &[Crossing], top: i32, bottom: i32, thinnest: i32) -> i32 {
+    let mut cut = bottom;
+    for pair in active.windows(2) {
+        if let [a, b] = pair {
+            let (apart, past) = (i64::from(b.top_x - a.top_x), i64::from(a.bottom_x - b.bottom_x));
+            // Changes of order by less than 1/32 pixel do not move coverage visibly.
+            if past > 8 && apart > 8 {
+                let y = top + (i64::from(bottom - top) * apart / (apart + past)) as i32;
+                cut = cut.min(y);
+            }
+        }
+    }
+    cut.max(top + thinnest).min(bottom)
+}
+
+/// Accumulates the edges of a slab that separate inside from outside.
+fn add_slab(cells: &mut StripCells<'_>, row: usize, active: &mut [Crossing], top: i32, bottom: i32, rule: FillRule) {
+    active.sort_unstable_by_key(|c| i64::from(c.top_x) + i64::from(c.bottom_x));
+    let mut around = 0_i32;
+    for crossing in active.iter() {
+        let was = inside(around, rule);
+        around = around.wrapping_add(crossing.part.winding);
+        let is = inside(around, rule);
+        if was != is {
+            let dy = bottom - top;
+            cells.add_row_piece(row, crossing.top_x, crossing.bottom_x, if is { dy } else { -dy });
+        }
+    }
+}

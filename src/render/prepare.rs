@@ -1,0 +1,130 @@
+//! Shapes to edges, listed by band.
+
+use std::ops::Range;
+
+use fearless_simd::Simd;
+
+use super::plan::Plan;
+use crate::display_list::{ClipKind, Command, DisplayList, Geometry};
+use crate::geom::{IntRect, Point, Rect};
+use crate::num::level::{SimdLevel, dispatch};
+use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
+use crate::path::stroke::{StrokeScratch, stroke};
+use crate::raster::edge::{BandList, EdgeBins, EdgeSink};
+
+/// The edges of a range of commands. Chunks are prepared independently of each other; a band reads them
+/// one after another.
+#[derive(Debug, Default)]
+pub(crate) struct Chunk {
+    bins: EdgeBins,
+    stroke: StrokeScratch,
+}
+
+/// How many chunks to prepare `commands` in: several per thread, so that a costly one does not hold
+/// up the rest.
+pub(super) fn chunk_count(commands: usize, threads: usize) -> usize {
+    if threads <= 1 { 1 } else { commands.min(8 * threads).max(1) }
+}
+
+/// `commands` cut into `chunks` ranges of nearly equal length.
+pub(super) fn split(commands: usize, chunks: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..chunks).map(move |chunk| commands * chunk / chunks..commands * (chunk + 1) / chunks)
+}
+
+impl Chunk {
+    /// What the chunk has for band `index`.
+    pub(super) fn band(&self, index: usize) -> Option<&BandList> {
+        self.bins.band(index)
+    }
+
+    /// Lists the edges of `range` of the list's commands.
+    #[expect(clippy::too_many_arguments, reason = "the frame's facts, passed once per chunk")]
+    pub(super) fn prepare(
+        &mut self,
+        list: &DisplayList,
+        plan: &Plan,
+        range: Range<usize>,
+        frame: IntRect,
+        bands: usize,
+        height_shift: u32,
+        level: SimdLevel,
+    ) {
+        self.bins.reset(bands, height_shift);
+        dispatch!(level, simd => self.prepare_with(simd, list, plan, range, frame));
+    }
+
+    #[inline(always)]
+    fn prepare_with<S: Simd>(&mut self, simd: S, list: &DisplayList, plan: &Plan, range: Range<usize>, frame: IntRect) {
+        for index in range {
+            let Some(command) = list.commands.get(index) else { break };
+            let number = index as u32;
+            match command {
+                Command::Draw(draw) => self.shape(simd, list, number, &draw.geometry, draw.bounds, frame),
+                Command::Clip(id) => {
+                    if let Some(clip) = list.clip(*id)
+                        && let ClipKind::Geometry { geometry, .. } = &clip.kind
+                    {
+                        self.shape(simd, list, number, geometry, clip.bounds, frame);
+                    }
+                }
+                Command::BeginLayer(layer) => self.bins.list(number, layer.bounds.intersect(frame)),
+                Command::EndLayer(layer) => self.shape(simd, list, number, &Geometry::Bounds, layer.bounds, frame),
+                Command::BeginMask(bounds) | Command::EndMask(bounds, _) => {
+                    self.bins.list(number, bounds.intersect(frame));
+                }
+                Command::Shadow(_) => {
+                    if let Some(shadow) = plan.shadow(number) {
+                        self.shape(simd, list, number, &Geometry::Bounds, shadow.bounds, frame);
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn shape<S: Simd>(
+        &mut self,
+        simd: S,
+        list: &DisplayList,
+        number: u32,
+        geometry: &Geometry,
+        bounds: IntRect,
+        frame: IntRect,
+    ) {
+        let bounds = bounds.intersect(frame);
+        if bounds.is_empty() {
+            return;
+        }
+        if let Geometry::Spans(_) = geometry {
+            self.bins.list(number, bounds);
+            return;
+        }
+        self.bins.begin(number, bounds);
+        let mut sink = EdgeSink::new(&mut self.bins, bounds, bounds.right >= frame.right);
+        match geometry {
+            Geometry::Fill { verbs, points, transform, .. } => {
+                let (verbs, points) = list.outline(*verbs, *points);
+                flatten_fill(simd, verbs, points, *transform, &mut sink);
+            }
+            Geometry::Stroke { verbs, points, transform, style } => {
+                let (verbs, points) = list.outline(*verbs, *points);
+                if let Some(style) = list.strokes.get(*style as usize) {
+                    let visible = bounds.to_rect();
+                    stroke(verbs, points, style, *transform, TOLERANCE, visible, &mut self.stroke, &mut sink);
+                }
+            }
+            Geometry::Bounds => rectangle(bounds.to_rect(), &mut sink),
+            Geometry::Spans(_) => {}
+        }
+        self.bins.end(bounds);
+    }
+}
+
+fn rectangle<K: PolygonSink>(rect: Rect, sink: &mut K) {
+    let [a, b, c, d]: [Point; 4] = rect.corners();
+    sink.begin(a);
+    sink.line(b);
+    sink.line(c);
+    sink.line(d);
+    sink.end();
+}
