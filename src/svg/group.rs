@@ -17,8 +17,8 @@ pub(super) fn draw<'t>(
     steps: &mut Vec<Step<'t>>,
     canvas: &mut Canvas<'_>,
 ) {
-    for filter in group.filters() {
-        renderer.warnings.add(WarningKind::Filter, filter.id());
+    if !group.filters().is_empty() {
+        renderer.warnings.add(WarningKind::Filter, group.id());
     }
     if group.should_isolate() {
         match single(group) {

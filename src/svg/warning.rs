@@ -9,8 +9,7 @@ use std::fmt;
 pub struct Warning {
     /// What it is.
     pub kind: WarningKind,
-    /// The `id` of the element: for filters and patterns theirs, for images the image's. Empty where
-    /// it has none.
+    /// The `id` of the element that shows it, or the pattern's own. Empty where it has none.
     pub id: String,
 }
 
@@ -39,9 +38,9 @@ impl fmt::Display for Warning {
         };
         match &self.kind {
             WarningKind::Filter => {
-                f.write_str("filter")?;
+                f.write_str("element")?;
                 id(f)?;
-                f.write_str(" is not applied: filters are not drawn yet")
+                f.write_str(" is drawn without its filter: filters are not drawn yet")
             }
             WarningKind::Image(reason) => {
                 f.write_str("image")?;
@@ -97,8 +96,8 @@ mod tests {
         assert_eq!(
             lines,
             [
-                "filter 'a\\nb' is not applied: filters are not drawn yet",
-                "filter is not applied: filters are not drawn yet"
+                "element 'a\\nb' is drawn without its filter: filters are not drawn yet",
+                "element is drawn without its filter: filters are not drawn yet"
             ]
         );
     }

@@ -341,25 +341,26 @@ fn a_nested_svg_image_is_clipped_to_its_size() {
 }
 
 #[test]
-fn a_filter_is_named_once_and_its_content_drawn() {
+fn a_filter_is_named_by_its_element_once_and_its_content_drawn() {
     let (pixmap, warnings) = draw(
         "<filter id='f'><feOffset dx='4'/></filter>\
-         <g filter='url(#f)'><rect width='4' height='8' fill='red'/></g><g filter='url(#f)'><rect width='1' height='1'/></g>",
+         <g filter='url(#f)' id='moved'><rect width='4' height='8' fill='red'/></g>\
+         <g filter='url(#f)'><rect width='1' height='1' fill='red'/></g><g filter='url(#f)'><rect width='2' height='1'/></g>",
     );
     assert_pixels(&pixmap, [(2, 2, RED)]);
-    assert_eq!(warnings.iter().map(|w| (&w.kind, w.id.as_str())).collect::<Vec<_>>(), [(&WarningKind::Filter, "f")]);
+    assert_eq!(warnings.iter().map(|w| (&w.kind, w.id.as_str())).collect::<Vec<_>>(), [(&WarningKind::Filter, "moved"), (&WarningKind::Filter, "")]);
 }
 
 #[test]
 fn masks_of_masks_of_masks_end() {
-    // Ten shapes in each mask, each under the next: ten to the ninth in all.
+    // Ten shapes in each mask, each under the next: ten to the fifth in all.
     let mut defs = String::new();
-    for n in 0..9 {
+    for n in 0..5 {
         let shape = format!("<rect width='8' height='8' fill='white' mask='url(#m{})'/>", n + 1);
-        defs += &format!("<mask id='m{n}'>{}</mask>", shape.repeat(10));
+        defs += &format!("<mask id='m{n}' maskUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'>{}</mask>", shape.repeat(10));
     }
     let (_, warnings) = draw(&format!(
-        "{defs}<mask id='m9'><rect width='8' height='8' fill='white'/></mask><rect width='8' height='8' mask='url(#m0)'/>"
+        "{defs}<mask id='m5' maskUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'><rect width='8' height='8' fill='white'/></mask><rect width='8' height='8' mask='url(#m0)'/>"
     ));
     assert_eq!(warnings.iter().map(|w| &w.kind).collect::<Vec<_>>(), [&WarningKind::TooComplex]);
 }
