@@ -20,9 +20,50 @@ pub(super) struct Outline<'t> {
 /// a number exponential in theirs.
 const MAX_OUTLINES: usize = 32;
 
-/// The outlines whose intersection is the clip path's area, or `None` where some union of outlines
-/// is part of it, or where they are too many.
-pub(super) fn outlines(clip: &usvg::ClipPath) -> Option<Vec<Outline<'_>>> {
+/// The outlines whose intersection is the area of the group's clip path, or `None` where some union of outlines
+/// is part of it, or where they are too many. Outlines around all that the group draws are left out: plots clip
+/// each of a thousand marks to the frame that holds them all.
+pub(super) fn outlines(group: &usvg::Group) -> Option<Vec<Outline<'_>>> {
+    let Some(clip) = group.clip_path() else { return Some(Vec::new()) };
+    let mut outlines = all_outlines(clip)?;
+    if let Some(content) = content(group) {
+        outlines.retain(|outline| !outline.holds(content));
+    }
+    Some(outlines)
+}
+
+/// The box of what the group's children draw. The group's own is not that: where an image is cut to fit,
+/// usvg makes it the box of the clip.
+fn content(group: &usvg::Group) -> Option<Rect> {
+    let mut boxes = group.children().iter().map(|node| {
+        let bounds = convert::bounds(node.stroke_bounding_box());
+        match node {
+            usvg::Node::Group(group) => convert::transform(group.transform()).map_rect(bounds),
+            _ => Some(bounds),
+        }
+    });
+    let first = boxes.next()??;
+    boxes.try_fold(first, |all, bounds| Some(all.union(bounds?)))
+}
+
+impl Outline<'_> {
+    /// Whether it is a rectangle around `content`, which clips nothing.
+    fn holds(&self, content: Rect) -> bool {
+        let rect = self
+            .shape
+            .filter(|_| self.transform.is_scale_translate())
+            .and_then(|(path, _)| convert::rectangle(path.data()))
+            .and_then(|rect| self.transform.map_rect(rect));
+        rect.is_some_and(|rect| {
+            rect.left <= content.left
+                && rect.top <= content.top
+                && rect.right >= content.right
+                && rect.bottom >= content.bottom
+        })
+    }
+}
+
+fn all_outlines(clip: &usvg::ClipPath) -> Option<Vec<Outline<'_>>> {
     let mut outlines = Vec::new();
     let mut clips = vec![(clip, Transform::IDENTITY)];
     while let Some((clip, outer)) = clips.pop() {
@@ -92,7 +133,7 @@ impl Renderer<'_> {
         canvas.transform(convert::transform(group.transform()));
         steps.push(Step::Restore);
         if let Some(clip) = group.clip_path() {
-            if let Some(outlines) = outlines(clip) {
+            if let Some(outlines) = all_outlines(clip) {
                 apply(&outlines, self.settings, canvas);
             } else if self.count_layer() {
                 canvas.push_layer(1.0, BlendMode::SourceOver);

@@ -16,6 +16,10 @@ pub(super) fn rect(r: usvg::NonZeroRect) -> Rect {
     Rect::from_ltrb(r.left(), r.top(), r.right(), r.bottom())
 }
 
+pub(super) fn bounds(r: usvg::Rect) -> Rect {
+    Rect::from_ltrb(r.left(), r.top(), r.right(), r.bottom())
+}
+
 pub(super) fn path(path: &usvg::tiny_skia_path::Path) -> Path {
     let point = |p: usvg::tiny_skia_path::Point| Point::new(p.x, p.y);
     let mut out = Path::new();

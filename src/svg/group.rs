@@ -48,16 +48,16 @@ fn begin_layer<'t>(
     canvas.transform(convert::transform(group.transform()));
     steps.push(Step::Restore);
     // One outline is a clip of the canvas; a union of several has to be drawn as a mask.
-    let outlines = group.clip_path().map(clip::outlines);
-    if let Some(Some(outlines)) = &outlines {
+    let outlines = clip::outlines(group);
+    if let Some(outlines) = &outlines {
         clip::apply(outlines, renderer.settings, canvas);
     }
     bound(group, canvas);
     canvas.push_layer(group.opacity().get(), convert::blend_mode(group.blend_mode()));
     steps.push(Step::PopLayer);
     steps.extend(group.mask().map(Step::Mask));
-    if let (Some(clip), Some(None)) = (group.clip_path(), &outlines) {
-        steps.push(Step::Clip(clip));
+    if outlines.is_none() {
+        steps.extend(group.clip_path().map(Step::Clip));
     }
     steps.push(Step::Children(group, 0));
 }
@@ -112,11 +112,7 @@ fn single(group: &usvg::Group) -> Option<Single<'_>> {
     let mut groups = Vec::new();
     let mut inner = group;
     loop {
-        let outlines = match inner.clip_path() {
-            Some(clip) => clip::outlines(clip)?,
-            None => Vec::new(),
-        };
-        groups.push((inner, outlines));
+        groups.push((inner, clip::outlines(inner)?));
         let [node] = inner.children() else { return None };
         inner = match node {
             usvg::Node::Group(group) => group,

@@ -12,6 +12,14 @@ use crate::geom::Rect;
 use crate::paint::FilterQuality;
 use crate::surface::Pixmap;
 
+/// An embedded picture that was decoded.
+pub(super) struct Picture {
+    /// The file that it is in; one file is shared by all that show it.
+    bytes: Arc<Vec<u8>>,
+    /// `None` where decoding failed.
+    image: Option<Arc<Pixmap>>,
+}
+
 impl Renderer<'_> {
     pub(super) fn draw_image<'t>(
         &mut self,
@@ -49,10 +57,10 @@ impl Renderer<'_> {
 
     /// The picture in a file's bytes, decoded once however often it is shown.
     fn picture(&mut self, bytes: &Arc<Vec<u8>>, id: &str) -> Option<Arc<Pixmap>> {
-        if let Some((_, picture)) = self.pictures.iter().find(|(key, _)| Arc::ptr_eq(key, bytes)) {
-            return picture.clone();
+        if let Some(picture) = self.pictures.iter().find(|picture| Arc::ptr_eq(&picture.bytes, bytes)) {
+            return picture.image.clone();
         }
-        let picture = match decode(bytes) {
+        let image = match decode(bytes) {
             Ok(picture) if self.count_pixels(picture.width(), picture.height()) => Some(Arc::new(picture)),
             Ok(_) => {
                 self.warnings.add(WarningKind::Image("the pictures are too large together".to_owned()), id);
@@ -63,8 +71,8 @@ impl Renderer<'_> {
                 None
             }
         };
-        self.pictures.push((bytes.clone(), picture.clone()));
-        picture
+        self.pictures.push(Picture { bytes: bytes.clone(), image: image.clone() });
+        image
     }
 }
 

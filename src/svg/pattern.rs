@@ -7,7 +7,7 @@ use super::render::Renderer;
 use super::warning::WarningKind;
 use crate::canvas::Canvas;
 use crate::geom::Transform;
-use crate::paint::Pattern;
+use crate::paint::{FilterQuality, Pattern};
 use crate::render::RenderSettings;
 use crate::surface::Pixmap;
 
@@ -24,8 +24,26 @@ const MAX_PATTERN_DEPTH: u32 = 16;
 /// A tile that was drawn, and what it was drawn for.
 pub(super) struct Tile {
     pattern: Arc<usvg::Pattern>,
-    size: (u32, u32),
+    grid: Grid,
     image: Arc<Pixmap>,
+}
+
+/// The pixels of a tile.
+#[derive(Clone, Copy, PartialEq)]
+struct Grid {
+    /// Columns and rows.
+    size: (u32, u32),
+    /// Pixels per unit of the pattern's space, across and down.
+    scale: (f32, f32),
+}
+
+/// The whole pixels of a tile's side, and the length that they show. The two differ by the rounding of a side of
+/// ten pixels or more: the tile is then repeated by whole pixels, as resvg does, and none is resampled. A shorter
+/// side, whose period this would change by more than a twentieth, is stretched to whole pixels instead.
+fn whole(side: f64) -> (u32, f64) {
+    // At most MAX_TILE_SIDE.
+    let pixels = side.round().max(1.0);
+    (pixels as u32, if side < 10.0 { pixels } else { side })
 }
 
 impl Renderer<'_> {
@@ -33,24 +51,26 @@ impl Renderer<'_> {
     pub(super) fn pattern(&mut self, pattern: &Arc<usvg::Pattern>, canvas: &Canvas<'_>) -> Option<Pattern> {
         let own = convert::transform(pattern.transform());
         let rect = convert::rect(pattern.rect());
-        let size = self.tile_size(pattern, canvas.current_transform().pre_concat(own))?;
-        let image = self.tile(pattern, size, canvas.settings())?;
-        // The tile's sides are whole pixels; stretching it back to the rectangle keeps the period exact.
-        let (width, height) = (size.0 as f32, size.1 as f32);
+        let to_device = canvas.current_transform().pre_concat(own);
+        let grid = self.grid(pattern, to_device)?;
+        let image = self.tile(pattern, grid, canvas.settings())?;
         Some(Pattern {
             transform: own
                 .pre_concat(Transform::from_translate(rect.left, rect.top))
-                .pre_concat(Transform::from_scale(rect.width() / width, rect.height() / height)),
+                .pre_concat(Transform::from_scale(1.0 / grid.scale.0, 1.0 / grid.scale.1)),
+            // Turned pixels lie between the device's, where bilinear sampling would soften lines and text.
+            quality: if to_device.is_scale_translate() { FilterQuality::Bilinear } else { FilterQuality::Bicubic },
             ..Pattern::new(image)
         })
     }
 
-    /// The size of the tile in pixels, nearest to its size on the device.
-    fn tile_size(&mut self, pattern: &usvg::Pattern, transform: Transform) -> Option<(u32, u32)> {
+    /// The tile's pixels, nearest to its size on the device.
+    fn grid(&mut self, pattern: &usvg::Pattern, transform: Transform) -> Option<Grid> {
         let length = |x: f32, y: f32| (f64::from(x) * f64::from(x) + f64::from(y) * f64::from(y)).sqrt();
         let rect = pattern.rect();
-        let width = f64::from(rect.width()) * length(transform.sx, transform.ky);
-        let height = f64::from(rect.height()) * length(transform.kx, transform.sy);
+        // Under a skew resvg takes the rows' lengths, not the columns', and the rounding below makes that visible.
+        let width = f64::from(rect.width()) * length(transform.sx, transform.kx);
+        let height = f64::from(rect.height()) * length(transform.ky, transform.sy);
         if !(width > 0.0 && height > 0.0 && width.is_finite() && height.is_finite()) {
             return None;
         }
@@ -62,18 +82,18 @@ impl Renderer<'_> {
         if fit != (width, height) {
             self.warnings.add(WarningKind::PatternSize, pattern.id());
         }
-        // Both are within 0 ..= MAX_TILE_SIDE.
-        let whole = |side: f64| side.round().max(1.0) as u32;
-        Some((whole(fit.0), whole(fit.1)))
+        let (columns, mut across) = whole(fit.0);
+        let (rows, mut down) = whole(fit.1);
+        if fit != (width, height) {
+            // Its pixels are resampled anyway.
+            (across, down) = (f64::from(columns), f64::from(rows));
+        }
+        let scale = ((across / f64::from(rect.width())) as f32, (down / f64::from(rect.height())) as f32);
+        (scale.0.is_normal() && scale.1.is_normal()).then_some(Grid { size: (columns, rows), scale })
     }
 
-    fn tile(
-        &mut self,
-        pattern: &Arc<usvg::Pattern>,
-        size: (u32, u32),
-        settings: RenderSettings,
-    ) -> Option<Arc<Pixmap>> {
-        if let Some(tile) = self.tiles.iter().find(|tile| tile.size == size && Arc::ptr_eq(&tile.pattern, pattern)) {
+    fn tile(&mut self, pattern: &Arc<usvg::Pattern>, grid: Grid, settings: RenderSettings) -> Option<Arc<Pixmap>> {
+        if let Some(tile) = self.tiles.iter().find(|tile| tile.grid == grid && Arc::ptr_eq(&tile.pattern, pattern)) {
             return Some(tile.image.clone());
         }
         if self.pattern_depth >= MAX_PATTERN_DEPTH {
@@ -83,19 +103,19 @@ impl Renderer<'_> {
         if !self.count_layer() {
             return None;
         }
+        let Grid { size, scale } = grid;
         let fits = self.count_pixels(size.0, size.1);
         let canvas = fits.then(|| Canvas::with_settings(size.0, size.1, settings).ok());
         let Some(mut canvas) = canvas.flatten() else {
             self.warnings.add(WarningKind::PatternSize, pattern.id());
             return None;
         };
-        let rect = pattern.rect();
-        canvas.transform(Transform::from_scale(size.0 as f32 / rect.width(), size.1 as f32 / rect.height()));
+        canvas.transform(Transform::from_scale(scale.0, scale.1));
         self.pattern_depth += 1;
         self.draw_children(pattern.root(), &mut canvas);
         self.pattern_depth -= 1;
         let image = Arc::new(canvas.into_pixmap());
-        self.tiles.push(Tile { pattern: pattern.clone(), size, image: image.clone() });
+        self.tiles.push(Tile { pattern: pattern.clone(), grid, image: image.clone() });
         Some(image)
     }
 }

@@ -3,14 +3,13 @@
 //! What is still to do lies on a stack of its own, not on the thread's: the depth of a tree is the
 //! file's choice.
 
-use std::sync::Arc;
-
+use super::image::Picture;
 use super::pattern::Tile;
 use super::shape::Effects;
 use super::warning::{Warning, WarningKind, Warnings};
 use super::{Settings, convert, group};
 use crate::canvas::Canvas;
-use crate::surface::{MaskKind, Pixmap};
+use crate::surface::MaskKind;
 
 /// The most elements that one call draws. A million elements, the most that usvg parses, are shown
 /// by a `use` or a pattern any number of times.
@@ -46,8 +45,8 @@ pub(super) struct Renderer<'s> {
     pub(super) warnings: Warnings,
     /// Patterns drawn so far: a pattern that fills a thousand shapes is drawn once.
     pub(super) tiles: Vec<Tile>,
-    /// Embedded pictures decoded so far, by their bytes; `None` where that failed.
-    pub(super) pictures: Vec<(Arc<Vec<u8>>, Option<Arc<Pixmap>>)>,
+    /// Embedded pictures decoded so far.
+    pub(super) pictures: Vec<Picture>,
     /// How many patterns are being drawn inside each other.
     pub(super) pattern_depth: u32,
     elements: u32,

@@ -348,7 +348,10 @@ fn a_filter_is_named_by_its_element_once_and_its_content_drawn() {
          <g filter='url(#f)'><rect width='1' height='1' fill='red'/></g><g filter='url(#f)'><rect width='2' height='1'/></g>",
     );
     assert_pixels(&pixmap, [(2, 2, RED)]);
-    assert_eq!(warnings.iter().map(|w| (&w.kind, w.id.as_str())).collect::<Vec<_>>(), [(&WarningKind::Filter, "moved"), (&WarningKind::Filter, "")]);
+    assert_eq!(
+        warnings.iter().map(|w| (&w.kind, w.id.as_str())).collect::<Vec<_>>(),
+        [(&WarningKind::Filter, "moved"), (&WarningKind::Filter, "")]
+    );
 }
 
 #[test]
@@ -357,7 +360,10 @@ fn masks_of_masks_of_masks_end() {
     let mut defs = String::new();
     for n in 0..5 {
         let shape = format!("<rect width='8' height='8' fill='white' mask='url(#m{})'/>", n + 1);
-        defs += &format!("<mask id='m{n}' maskUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'>{}</mask>", shape.repeat(10));
+        defs += &format!(
+            "<mask id='m{n}' maskUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'>{}</mask>",
+            shape.repeat(10)
+        );
     }
     let (_, warnings) = draw(&format!(
         "{defs}<mask id='m5' maskUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'><rect width='8' height='8' fill='white'/></mask><rect width='8' height='8' mask='url(#m0)'/>"
@@ -415,4 +421,14 @@ fn numbers_at_the_ends_of_their_range_end_in_a_picture() {
         // Whatever the picture is, it is the same once more.
         assert_eq!(draw(content).0, draw(content).0, "{content}");
     }
+}
+
+#[test]
+fn an_image_cut_to_fit_is_clipped_to_its_place() {
+    // 2 × 1 pixels over a square of 4: scaled by 4, green fills the square and blue lies outside it.
+    let pixmap = whole(&format!(
+        "<image href='{}' width='4' height='4' preserveAspectRatio='xMinYMin slice' image-rendering='optimizeSpeed'/>",
+        picture()
+    ));
+    assert_pixels(&pixmap, [(0, 0, GREEN), (3, 3, GREEN), (4, 0, CLEAR), (7, 3, CLEAR), (0, 4, CLEAR)]);
 }
