@@ -2,6 +2,8 @@
 
 mod blend;
 mod canvas;
+#[cfg(feature = "codec")]
+mod codec;
 mod color;
 mod display_list;
 mod error;
@@ -14,6 +16,8 @@ pub mod raster;
 mod render;
 mod style;
 mod surface;
+#[cfg(feature = "svg")]
+pub mod svg;
 
 pub use blend::BlendMode;
 pub use canvas::{Canvas, SaveGuard, Shadow};

@@ -3,5 +3,9 @@
 #[path = "../oracle/mod.rs"]
 mod oracle;
 
+#[cfg(feature = "cli")]
+mod cli;
 mod seeds_lines;
 mod seeds_polygons;
+#[cfg(all(feature = "svg", feature = "codec"))]
+mod svg;

@@ -1,1 +1,42 @@
-fn main() {}
+//! The program: SVG files to PNG on the command line. It sees nothing but the library's public surface.
+
+mod args;
+mod completions;
+mod fonts;
+mod images;
+mod info;
+mod json;
+mod man;
+mod notes;
+mod plan;
+mod render;
+mod report;
+mod reports;
+mod size;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use args::{Arguments, Command};
+use report::{Failure, Outcome};
+
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::SomeFailed) => ExitCode::from(1),
+        Err(failure) => {
+            report::complain(&failure.to_string());
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> Result<Outcome, Failure> {
+    match arguments.command {
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Info(arguments) => info::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+        Command::Man(arguments) => man::run(&arguments),
+    }
+}

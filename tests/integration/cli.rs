@@ -1,0 +1,400 @@
+//! The program, driven as a user would.
+
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use rastrum::Pixmap;
+
+const RED: [u8; 4] = [255, 0, 0, 255];
+const BLUE: [u8; 4] = [0, 0, 255, 255];
+
+/// A folder of its own for each test, gone afterwards.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = format!("rastrum-cli-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(name);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> &Self {
+        let path = self.0.join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+        self
+    }
+
+    fn read(&self, name: &str) -> Pixmap {
+        Pixmap::load_png(self.0.join(name)).unwrap()
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.0.join(name).exists()
+    }
+
+    /// The names of the files directly in the folder, sorted.
+    fn names(&self) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(&self.0).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rastrum"));
+        command.current_dir(&self.0).args(arguments).stdin(Stdio::null());
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    fn run_with_input(&self, arguments: &[&str], input: &[u8]) -> Output {
+        let mut command = self.command(arguments);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        child.stdin.take().unwrap().write_all(input).unwrap();
+        child.wait_with_output().unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// 4 × 2 pixels, red on the left, blue on the right.
+const FLAG: &str = "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='2'>\
+    <rect width='2' height='2' fill='red'/><rect id='right' x='2' width='2' height='2' fill='blue'/></svg>";
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+#[track_caller]
+fn assert_flag(pixmap: &Pixmap, width: u32, height: u32) {
+    assert_eq!((pixmap.width(), pixmap.height()), (width, height));
+    assert_eq!(pixmap.pixel(0, 0), Some(RED));
+    assert_eq!(pixmap.pixel(width - 1, height - 1), Some(BLUE));
+}
+
+#[track_caller]
+fn assert_success(output: &Output) {
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(text(&output.stderr), "");
+}
+
+/// The command failed as a whole, with one line that begins with `rastrum: ` and holds `part`.
+#[track_caller]
+fn assert_failure(output: &Output, part: &str) {
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let line = text(&output.stderr);
+    assert!(line.starts_with("rastrum: ") && line.ends_with('\n') && line.lines().count() == 1, "{line:?}");
+    assert!(line.contains(part), "{line:?} lacks {part:?}");
+    assert_eq!(text(&output.stdout), "");
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+#[test]
+fn the_picture_goes_beside_the_input() {
+    let folder = Folder::new();
+    let output = folder.write("a.svg", FLAG).run(&["render", "a.svg"]);
+    assert_success(&output);
+    assert_flag(&folder.read("a.png"), 4, 2);
+    assert_eq!(folder.names(), ["a.png", "a.svg"], "and nothing else stays behind");
+}
+
+#[test]
+fn sizes_keep_the_aspect() {
+    let folder = Folder::new();
+    folder.write("a.svg", FLAG);
+    for (arguments, width, height) in [
+        (["-w", "40", "--width", ""].as_slice(), 40, 20),
+        (&["-H", "10"], 20, 10),
+        (&["-w", "100", "-H", "10"], 20, 10),
+        (&["-z", "2.5"], 10, 5),
+    ] {
+        let arguments: Vec<_> =
+            ["render", "a.svg", "-o", "out.png"].iter().chain(arguments.iter().take(4)).copied().collect();
+        let arguments: Vec<_> = arguments.into_iter().filter(|a| !a.is_empty() && *a != "--width").collect();
+        assert_success(&folder.run(&arguments));
+        assert_flag(&folder.read("out.png"), width, height);
+    }
+    assert_failure(&folder.run(&["render", "a.svg", "-w", "99999"]), "smaller --width");
+}
+
+#[test]
+fn the_background_lies_behind() {
+    let folder = Folder::new();
+    folder.write("a.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='2' height='2'/>");
+    assert_success(&folder.run(&["render", "a.svg", "-b", "rgba(255, 0, 0, 0.2)"]));
+    // 0.2 of 255 is 51; straight red comes back from it.
+    assert_eq!(folder.read("a.png").to_straight()[..4], [255, 0, 0, 51]);
+    let output = folder.run(&["render", "a.svg", "-b", "reddish"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn one_element_is_drawn_at_its_own_size() {
+    let folder = Folder::new();
+    folder.write("a.svg", FLAG);
+    assert_success(&folder.run(&["render", "a.svg", "--export-id", "right"]));
+    let pixmap = folder.read("a.png");
+    assert_eq!((pixmap.width(), pixmap.height(), pixmap.pixel(0, 0)), (2, 2, Some(BLUE)));
+    assert_failure(&folder.run(&["render", "a.svg", "--export-id", "middle"]), "'middle'");
+}
+
+#[test]
+fn standard_input_to_standard_output() {
+    let folder = Folder::new();
+    for arguments in [["render", "-"].as_slice(), &["render", "-", "-o", "-"]] {
+        let output = folder.run_with_input(arguments, FLAG.as_bytes());
+        assert_success(&output);
+        assert_flag(&Pixmap::decode_png(&output.stdout).unwrap(), 4, 2);
+    }
+    assert_failure(&folder.run_with_input(&["render", "-"], b"<svg"), "standard input");
+}
+
+#[test]
+fn several_inputs_take_a_pattern() {
+    let folder = Folder::new();
+    folder.write("in/a.svg", FLAG).write("in/b.svg", FLAG);
+    assert_success(&folder.run(&["render", "in/a.svg", "in/b.svg", "-o", "{dir}/{stem}@2x.png", "-z", "2"]));
+    assert_flag(&folder.read("in/a@2x.png"), 8, 4);
+    assert_flag(&folder.read("in/b@2x.png"), 8, 4);
+    // Quoted, so that no shell but the program reads the pattern; missing folders are made for it.
+    assert_success(&folder.run(&["render", "in/*.svg", "-o", "out/{stem}.png", "-j", "2"]));
+    assert_flag(&folder.read("out/b.png"), 4, 2);
+}
+
+#[test]
+fn a_folder_is_searched_and_mirrored() {
+    let folder = Folder::new();
+    folder.write("in/a.svg", FLAG).write("in/deep/b.SVGZ", packed(FLAG.as_bytes())).write("in/notes.txt", "no SVG");
+    assert_success(&folder.run(&["render", "in", "-o", "out/"]));
+    assert_flag(&folder.read("out/a.png"), 4, 2);
+    assert_flag(&folder.read("out/deep/b.png"), 4, 2);
+    assert!(!folder.has("out/notes.png"));
+    folder.write("empty/notes.txt", "no SVG");
+    assert_failure(&folder.run(&["render", "empty"]), "no .svg or .svgz");
+}
+
+#[test]
+fn one_bad_file_among_good_ones_is_told_and_the_others_go_on() {
+    let folder = Folder::new();
+    folder.write("a.svg", FLAG).write("bad.svg", "<svg").write("c.svg", FLAG);
+    let output = folder.run(&["render", "a.svg", "bad.svg", "missing.svg", "c.svg"]);
+    assert_eq!(output.status.code(), Some(1));
+    let errors = text(&output.stderr);
+    assert_eq!(errors.lines().count(), 3, "{errors}");
+    assert!(errors.contains("rastrum: bad.svg: not an SVG"), "{errors}");
+    assert!(errors.contains("rastrum: missing.svg: no such file"), "{errors}");
+    assert!(errors.contains("2 of 4 files failed"), "{errors}");
+    assert_flag(&folder.read("a.png"), 4, 2);
+    assert_flag(&folder.read("c.png"), 4, 2);
+    assert!(!folder.has("bad.png"));
+}
+
+#[test]
+fn a_collision_is_refused_before_anything_is_drawn() {
+    let folder = Folder::new();
+    folder.write("x/a.svg", FLAG).write("y/a.svg", FLAG);
+    assert_failure(&folder.run(&["render", "x/a.svg", "y/a.svg", "-o", "{stem}.png"]), "both x/a.svg and y/a.svg");
+    assert_failure(&folder.run(&["render", "x/a.svg", "y/a.svg", "-o", "one.png"]), "{stem}");
+    assert_failure(&folder.run(&["render", "x/a.svg", "-o", "y/../x/a.svg"]), "overwrite");
+    assert_eq!(folder.names(), ["x", "y"]);
+    assert_eq!(fs::read_to_string(folder.0.join("x/a.svg")).unwrap(), FLAG);
+}
+
+#[test]
+fn a_failure_leaves_the_old_picture() {
+    let folder = Folder::new();
+    folder.write("a.svg", FLAG);
+    assert_success(&folder.run(&["render", "a.svg"]));
+    folder.write("a.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='2'><rect></svg>");
+    assert_failure(&folder.run(&["render", "a.svg"]), "a.svg");
+    assert_flag(&folder.read("a.png"), 4, 2);
+    assert_eq!(folder.names(), ["a.png", "a.svg"]);
+}
+
+#[test]
+fn a_target_that_cannot_be_written_is_named() {
+    let folder = Folder::new();
+    folder.write("a.svg", FLAG).write("taken.png/inside", "");
+    assert_failure(&folder.run(&["render", "a.svg", "-o", "no/such/a.png"]), "folder is not there");
+    // The default target of taken.svg is a folder.
+    folder.write("taken.svg", FLAG);
+    assert_failure(&folder.run(&["render", "taken.svg"]), "it is a folder");
+    folder.write("kept.png", "old");
+    let mut permissions = fs::metadata(folder.0.join("kept.png")).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(folder.0.join("kept.png"), permissions).unwrap();
+    assert_failure(&folder.run(&["render", "a.svg", "-o", "kept.png"]), "permissions");
+    assert_eq!(fs::read(folder.0.join("kept.png")).unwrap(), b"old");
+}
+
+#[test]
+fn what_is_no_svg_ends_in_one_line() {
+    let folder = Folder::new();
+    // Bytes as from a random source, always the same ones.
+    let mut state = 1_u64;
+    let noise: Vec<u8> = std::iter::repeat_with(|| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 56) as u8
+    })
+    .take(100_000)
+    .collect();
+    let mut torn = packed(FLAG.as_bytes());
+    torn.truncate(torn.len() / 2);
+    let zero = "<svg xmlns='http://www.w3.org/2000/svg' width='0' height='2'/>";
+    let nested = format!("<svg xmlns='http://www.w3.org/2000/svg'>{}", "<g>".repeat(100_000));
+    let closed = format!("{nested}{}</svg>", "</g>".repeat(100_000));
+    for (bytes, part) in [
+        (b"".as_slice(), "empty"),
+        (&noise, "not an SVG"),
+        (b"\x1f\x8b", "gzip"),
+        (&torn, "gzip"),
+        (b"<html/>", "not an SVG"),
+        (zero.as_bytes(), "no valid size"),
+        (nested.as_bytes(), "not an SVG"),
+        (closed.as_bytes(), "deep"),
+        (b"\xff\xfe<\0s\0v\0g\0/\0>\0", "not UTF-8"),
+    ] {
+        folder.write("a.svg", bytes);
+        assert_failure(&folder.run(&["render", "a.svg"]), part);
+    }
+    assert_failure(&folder.run(&["render", "missing.svg"]), "no such file");
+    assert_eq!(folder.names(), ["a.svg"]);
+}
+
+#[test]
+fn a_packed_file_is_unpacked_up_to_a_limit() {
+    let folder = Folder::new();
+    folder.write("a.svgz", packed(FLAG.as_bytes()));
+    assert_success(&folder.run(&["render", "a.svgz"]));
+    assert_flag(&folder.read("a.png"), 4, 2);
+    // 257 MiB of spaces, packed a member of a MiB at a time: about a quarter of a MiB.
+    let member = packed(&vec![b' '; 1 << 20]);
+    folder.write("bomb.svgz", member.repeat(257));
+    assert_failure(&folder.run(&["render", "bomb.svgz"]), "limit");
+}
+
+#[test]
+fn elements_as_deep_as_the_parser_takes_are_drawn() {
+    let folder = Folder::new();
+    let groups = "<g opacity='0.999'>".repeat(1000);
+    let svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='2'>{groups}\
+         <rect width='9' height='9' fill='red'/>{}</svg>",
+        "</g>".repeat(1000)
+    );
+    assert_success(&folder.write("a.svg", svg).run(&["render", "a.svg"]));
+    // 0.999 to the thousandth is 0.3677.
+    let alpha = i32::from(folder.read("a.png").pixel(1, 1).unwrap()[3]);
+    assert!((alpha - 94).abs() <= 1, "{alpha}");
+}
+
+#[test]
+fn what_is_left_out_is_warned_of_unless_quiet() {
+    let folder = Folder::new();
+    folder.write(
+        "a.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='2'><image href='gone.png' width='2' height='2'/></svg>",
+    );
+    let output = folder.run(&["render", "a.svg"]);
+    assert!(output.status.success());
+    assert!(text(&output.stderr).starts_with("rastrum: a.svg: warning: "), "{output:?}");
+    assert!(text(&output.stderr).contains("gone.png"), "{output:?}");
+    assert_success(&folder.run(&["render", "a.svg", "-q"]));
+}
+
+#[test]
+fn timings_are_one_object_a_line_in_the_order_of_the_inputs() {
+    let folder = Folder::new();
+    folder.write("b.svg", FLAG).write("a.svg", FLAG);
+    let output = folder.run(&["render", "b.svg", "a.svg", "--timings", "json"]);
+    assert_success(&output);
+    let lines: Vec<_> = text(&output.stdout).lines().collect();
+    assert!(lines[0].starts_with(r#"{"input":"b.svg","output":"b.png","width":4,"height":2,"parse_ms":"#), "{lines:?}");
+    assert!(lines[1].contains(r#""input":"a.svg""#) && lines[1].ends_with(r#""warnings":[]}"#), "{lines:?}");
+    assert_eq!(lines.len(), 2);
+    let output = folder.run(&["render", "a.svg", "-o", "-", "--timings", "json"]);
+    assert_flag(&Pixmap::decode_png(&output.stdout).unwrap(), 4, 2);
+    assert!(text(&output.stderr).starts_with(r#"{"input":"a.svg","output":"-""#), "{output:?}");
+}
+
+#[test]
+fn threads_and_jobs_do_not_change_a_byte() {
+    let folder = Folder::new();
+    folder.write("a.svg", FLAG).write("b.svg", FLAG);
+    assert_success(&folder.run(&["render", "a.svg", "b.svg", "-z", "40.3", "-j", "2", "--threads", "2"]));
+    let first = fs::read(folder.0.join("a.png")).unwrap();
+    assert_success(&folder.run(&["render", "a.svg", "-z", "40.3", "--threads", "1"]));
+    assert_eq!(first, fs::read(folder.0.join("a.png")).unwrap());
+    assert_eq!(first, fs::read(folder.0.join("b.png")).unwrap());
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let folder = Folder::new();
+    let mut child =
+        folder.command(&["completions", "bash"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut output = child.stdout.take().unwrap();
+    output.read_exact(&mut [0; 1]).unwrap();
+    drop(output);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+}
+
+#[test]
+fn info_completions_and_man_print_what_they_are_for() {
+    let folder = Folder::new();
+    for (arguments, part) in [
+        (["info"].as_slice(), "scalar"),
+        (&["info", "--json"], r#""chosen":""#),
+        (&["completions", "zsh"], "#compdef rastrum"),
+        (&["man"], ".TH rastrum"),
+        (&["man", "render"], "{stem}"),
+        (&["render", "--help"], "Examples:"),
+        (&["--version"], env!("CARGO_PKG_VERSION")),
+    ] {
+        let output = folder.run(arguments);
+        assert_success(&output);
+        assert!(text(&output.stdout).contains(part), "{arguments:?}");
+    }
+    assert_failure(&folder.run(&["man", "paint"]), "'paint'");
+}
+
+#[test]
+fn wrong_arguments_exit_with_2() {
+    let folder = Folder::new();
+    folder.write("a.svg", FLAG);
+    for arguments in [
+        ["render"].as_slice(),
+        &["paint"],
+        &["render", "a.svg", "-w", "0"],
+        &["render", "a.svg", "-z", "-1"],
+        &["render", "a.svg", "-z", "2", "-w", "3"],
+        &["render", "a.svg", "--antialias", "supersample=99"],
+        &["render", "a.svg", "--font-file", "no-such-font.ttf"],
+    ] {
+        let output = folder.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(!output.stderr.is_empty() && output.stdout.is_empty(), "{arguments:?}");
+    }
+    assert!(!Path::new(&folder.0).join("a.png").exists());
+}
