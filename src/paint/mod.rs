@@ -13,6 +13,8 @@ mod taps;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use fetch::fetch_block;
+pub(crate) use prepare::PreparedPaint;
 pub use shader::{
     FilterQuality, GradientStop, LinearGradient, Pattern, RadialGradient, Shader, SpreadMode, SweepGradient,
 };

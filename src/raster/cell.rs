@@ -257,18 +257,19 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
     let (x0, y0, x1, y1, winding) = edge.downward();
     let first = (y0 - top).div_euclid(STRIP);
     let last = (y1 - 1 - top).div_euclid(STRIP);
-    if first == last {
-        if let Some(mut strip) = usize::try_from(first).ok().filter(|s| *s < strips).and_then(|s| cells.strip(s)) {
-            add_piece::<S, TOUCH>(simd, &mut strip, (x0, y0), (x1, y1), winding, top + first * STRIP);
-        }
-        return;
-    }
-    let line = EdgeLine::new(x0, y0, x1, y1);
+    let line = (first != last).then(|| EdgeLine::new(x0, y0, x1, y1));
     for index in first.max(0)..(last + 1).min(strips as i32) {
         let strip_top = top + index * STRIP;
-        let start = if y0 >= strip_top { (x0, y0) } else { (line.x_at(strip_top), strip_top) };
         let bottom = strip_top + STRIP;
-        let end = if y1 <= bottom { (x1, y1) } else { (line.x_at(bottom), bottom) };
+        let (mut start, mut end) = ((x0, y0), (x1, y1));
+        if let Some(line) = line {
+            if y0 < strip_top {
+                start = (line.x_at(strip_top), strip_top);
+            }
+            if y1 > bottom {
+                end = (line.x_at(bottom), bottom);
+            }
+        }
         if let Some(mut strip) = cells.strip(index as usize) {
             add_piece::<S, TOUCH>(simd, &mut strip, start, end, winding, strip_top);
         }

@@ -158,8 +158,24 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
 }
 
 /// Draws one shape onto the open layer, or onto the target.
-#[inline(always)]
+#[inline(never)]
 fn paint_draw<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    target: &mut Surface<'_>,
+    scratch: &mut BandScratch,
+    draw: &Draw,
+    paint: &PreparedPaint,
+    edges: &[Edge],
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || paint_draw_inner(simd, frame, target, scratch, draw, paint, edges),
+    )
+}
+
+#[inline(always)]
+fn paint_draw_inner<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     target: &mut Surface<'_>,
@@ -193,8 +209,24 @@ fn open_surface<'a>(frame: &Frame<'_>, target: &'a mut Surface<'_>, layers: &'a 
 }
 
 /// Draws a finished layer onto the one below, or onto the target.
-#[inline(always)]
+#[inline(never)]
 fn paint_layer<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    target: &mut Surface<'_>,
+    scratch: &mut BandScratch,
+    layer: &LayerStart,
+    pixels: &mut LayerBuffer,
+    edges: &[Edge],
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || paint_layer_inner(simd, frame, target, scratch, layer, pixels, edges),
+    )
+}
+
+#[inline(always)]
+fn paint_layer_inner<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     target: &mut Surface<'_>,
@@ -214,8 +246,23 @@ fn paint_layer<S: Simd>(
 }
 
 /// Multiplies a layer by what was drawn as its mask.
-#[inline(always)]
+#[inline(never)]
 fn mask_layer<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    layer: &mut LayerBuffer,
+    mask: &mut LayerBuffer,
+    bounds: IntRect,
+    kind: MaskKind,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || mask_layer_inner(simd, frame, layer, mask, bounds, kind),
+    )
+}
+
+#[inline(always)]
+fn mask_layer_inner<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     layer: &mut LayerBuffer,
@@ -244,8 +291,23 @@ fn mask_layer<S: Simd>(
 }
 
 /// Accumulates a shape into the cells and says how to read them.
-#[inline(always)]
+#[inline(never)]
 fn accumulate<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    scratch: &mut BandScratch,
+    geometry: &Geometry,
+    antialias: Antialias,
+    edges: &[Edge],
+) -> CoverageRule {
+    simd.vectorize(
+        #[inline(always)]
+        || accumulate_inner(simd, frame, scratch, geometry, antialias, edges),
+    )
+}
+
+#[inline(always)]
+fn accumulate_inner<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     scratch: &mut BandScratch,
@@ -314,16 +376,20 @@ fn add_spans(frame: &Frame<'_>, cells: &mut Accumulator, spans: &[Span]) {
 #[inline(always)]
 fn clip_for<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch, clip: ClipId) {
     if clip != ClipId::NONE && scratch.clips.chain.last().is_none_or(|(id, _)| *id != clip.0) {
-        // Rare beside draws, and large: not inlined into each of its callers.
-        simd.vectorize(
-            #[inline(always)]
-            || build_clip(simd, frame, scratch, clip),
-        );
+        build_clip(simd, frame, scratch, clip);
     }
 }
 
-#[inline(always)]
+#[inline(never)]
 fn build_clip<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch, clip: ClipId) {
+    simd.vectorize(
+        #[inline(always)]
+        || build_clip_inner(simd, frame, scratch, clip),
+    );
+}
+
+#[inline(always)]
+fn build_clip_inner<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch, clip: ClipId) {
     // The clips from `clip` outwards, up to one whose coverage is known. Parents are older than their
     // children, so that known ones younger than the clip in hand are of another branch.
     let mut missing: Vec<(u32, &ClipNode)> = Vec::new();
@@ -450,8 +516,23 @@ struct Look<'a> {
 }
 
 /// Sweeps all strips' cells onto a surface.
-#[inline(always)]
+#[inline(never)]
 fn paint_cells<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    cells: &mut Accumulator,
+    rule: CoverageRule,
+    look: Look<'_>,
+    surface: &mut Surface<'_>,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || paint_cells_inner(simd, frame, cells, rule, look, surface),
+    )
+}
+
+#[inline(always)]
+fn paint_cells_inner<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     cells: &mut Accumulator,
@@ -514,8 +595,16 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
 
 impl Painter<'_, '_, '_> {
     /// Multiplies coverage by opacity and clip; false where nothing is left.
-    #[inline(always)]
+    #[inline(never)]
     fn cut<S: Simd>(&self, simd: S, index: usize, mask: &mut MaskBlock) -> bool {
+        simd.vectorize(
+            #[inline(always)]
+            || self.cut_inner(simd, index, mask),
+        )
+    }
+
+    #[inline(always)]
+    fn cut_inner<S: Simd>(&self, simd: S, index: usize, mask: &mut MaskBlock) -> bool {
         match self.look.clip.map_or(ClipBlock::Full, |clip| clip.get(self.strip, index)) {
             ClipBlock::Empty => return false,
             ClipBlock::Full => {}
@@ -534,8 +623,16 @@ impl Painter<'_, '_, '_> {
     }
 
     /// Source-over of one colour along whole blocks of constant coverage.
-    #[inline(always)]
+    #[inline(never)]
     fn fill_run<S: Simd>(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT], color: [u8; 4]) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.fill_run_inner(simd, start, end, rows, color),
+        );
+    }
+
+    #[inline(always)]
+    fn fill_run_inner<S: Simd>(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT], color: [u8; 4]) {
         for (row, &coverage) in rows.iter().enumerate().take(self.rows) {
             if coverage == 0 {
                 continue;
@@ -564,8 +661,16 @@ impl Painter<'_, '_, '_> {
     }
 
     /// Draws one block by its final coverage.
-    #[inline(always)]
+    #[inline(never)]
     fn paint<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.paint_inner(simd, index, mask),
+        );
+    }
+
+    #[inline(always)]
+    fn paint_inner<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
         let first_row = self.strip * BLOCK_HEIGHT;
         let over = self.look.blend_mode == BlendMode::SourceOver;
         if over && let Source::Solid(color) = self.look.source {
