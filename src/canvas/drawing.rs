@@ -162,11 +162,7 @@ impl Canvas<'_> {
     }
 
     /// Records what `geometry` records, with its shadow before it.
-    pub(super) fn draw(
-        &mut self,
-        paint: Paint,
-        geometry: impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>,
-    ) {
+    pub(super) fn draw(&mut self, paint: Paint, geometry: impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>) {
         let mut geometry = geometry;
         if self.state.bounds.is_empty() || paint.blend_mode == BlendMode::Destination {
             return;

@@ -150,8 +150,7 @@ impl DisplayList {
         if u32::try_from(ends.0).is_err() || u32::try_from(ends.1).is_err() {
             return ((0, 0), (0, 0));
         }
-        let ranges =
-            ((self.verbs.len() as u32, ends.0 as u32), (self.points.len() as u32, ends.1 as u32));
+        let ranges = ((self.verbs.len() as u32, ends.0 as u32), (self.points.len() as u32, ends.1 as u32));
         self.verbs.extend_from_slice(verbs);
         self.points.extend_from_slice(points);
         ranges

@@ -3,5 +3,5 @@
 mod command;
 mod paint;
 
-pub(crate) use command::{ClipKind, ClipNode, ClipId, Command, DisplayList, Draw, Geometry, LayerStart, Shadow, Span};
+pub(crate) use command::{ClipId, ClipKind, ClipNode, Command, DisplayList, Draw, Geometry, LayerStart, Shadow, Span};
 pub use paint::{ImagePaint, Paint};

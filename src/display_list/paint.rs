@@ -30,12 +30,7 @@ impl Default for Paint {
 impl Paint {
     /// A paint with the given shader and the defaults for the rest.
     pub fn new(shader: impl Into<Shader>) -> Self {
-        Self {
-            shader: shader.into(),
-            opacity: 1.0,
-            blend_mode: BlendMode::SourceOver,
-            antialias: Antialias::Analytic,
-        }
+        Self { shader: shader.into(), opacity: 1.0, blend_mode: BlendMode::SourceOver, antialias: Antialias::Analytic }
     }
 
     /// The same with the given opacity.

@@ -81,8 +81,7 @@ fn box_blur(line: &[u8], out: &mut [u8], before: usize, after: usize) {
 fn kernel(deviation: f32) -> Vec<u32> {
     let deviation = f64::from(deviation);
     let reach = (deviation * 3.0).ceil() as usize;
-    let raw: Vec<f64> =
-        (0..=reach).map(|x| trig::exp(-((x * x) as f64) / (2.0 * deviation * deviation))).collect();
+    let raw: Vec<f64> = (0..=reach).map(|x| trig::exp(-((x * x) as f64) / (2.0 * deviation * deviation))).collect();
     let total = raw.iter().sum::<f64>() * 2.0 - 1.0;
     let mut weights: Vec<u32> = raw.iter().map(|w| (w / total * 65_536.0 + 0.5) as u32).collect();
     let others: u32 = weights.iter().skip(1).sum();

@@ -331,7 +331,7 @@ impl<B: PointMap, A: PointMap, K: PolygonSink> Walker<'_, '_, B, A, K> {
     }
 
     fn is_on(&self) -> bool {
-        self.index % 2 == 0
+        self.index.is_multiple_of(2)
     }
 
     /// Moves on by `length` without drawing. Both ends are out of sight.

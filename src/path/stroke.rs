@@ -389,7 +389,7 @@ mod tests {
         for path in [&line, &closed] {
             let draw = |cap| outline(path, &Stroke::new(2.0).with_cap(cap), Transform::IDENTITY, 0.01);
             assert!(draw(LineCap::Butt).is_empty());
-            assert_eq!(draw(LineCap::Square), [square.clone()]);
+            assert_eq!(draw(LineCap::Square), std::slice::from_ref(&square));
             let disc = draw(LineCap::Round);
             assert_eq!(disc.len(), 1);
             assert!(disc[0].len() >= 12);

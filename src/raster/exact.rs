@@ -136,7 +136,8 @@ fn resolve_row(
     ends.extend(parts.iter().flat_map(|part| [part.y0, part.y1]));
     ends.sort_unstable();
     ends.dedup();
-    let thinnest = (fixed::ONE as usize * parts.len() / PIECES_PER_ROW).clamp(1, fixed::ONE as usize / FEWEST_SLABS) as i32;
+    let thinnest =
+        (fixed::ONE as usize * parts.len() / PIECES_PER_ROW).clamp(1, fixed::ONE as usize / FEWEST_SLABS) as i32;
     let mut rest = &ends[..];
     while let [top, after @ ..] = rest {
         let Some(bottom) = after.iter().find(|y| **y - top >= thinnest).or(after.last()).copied() else { break };

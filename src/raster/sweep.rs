@@ -38,11 +38,32 @@ pub(crate) fn sweep<S: Simd, K: BlockSink<S>>(
     sink: &mut K,
 ) {
     match rule {
-        CoverageRule::NonZero => sweep_with(simd, cells, blocks, sink, #[inline(always)] |v| non_zero(simd, v)),
-        CoverageRule::EvenOdd => sweep_with(simd, cells, blocks, sink, #[inline(always)] |v| even_odd(simd, v)),
+        CoverageRule::NonZero => sweep_with(
+            simd,
+            cells,
+            blocks,
+            sink,
+            #[inline(always)]
+            |v| non_zero(simd, v),
+        ),
+        CoverageRule::EvenOdd => sweep_with(
+            simd,
+            cells,
+            blocks,
+            sink,
+            #[inline(always)]
+            |v| even_odd(simd, v),
+        ),
         CoverageRule::Samples(count) => {
             let scale = 255.0 / f32::from(count);
-            sweep_with(simd, cells, blocks, sink, #[inline(always)] |v| samples(simd, v, scale));
+            sweep_with(
+                simd,
+                cells,
+                blocks,
+                sink,
+                #[inline(always)]
+                |v| samples(simd, v, scale),
+            );
         }
     }
 }
@@ -82,9 +103,9 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
             for (quad, columns) in quads.iter_mut().zip(columns.as_chunks_mut::<4>().0) {
                 let mut packed = i32x8::splat(simd, 0);
                 for (shift, column) in columns.iter_mut().enumerate() {
-                    cover = cover + i32x8::load_array_ref(simd, column);
+                    cover += i32x8::load_array_ref(simd, column);
                     *column = [0; BLOCK_HEIGHT];
-                    packed = packed | (coverage(cover) << (8 * shift as u32));
+                    packed |= coverage(cover) << (8 * shift as u32);
                 }
                 packed.store_array(quad);
             }

@@ -278,7 +278,9 @@ fn mask_layer_inner<S: Simd>(
             let shown = mask.load(strip, block);
             let mut coverage = EMPTY_MASK;
             for (y, (out, row)) in (frame.top + (strip * BLOCK_HEIGHT) as i32..).zip(coverage.iter_mut().zip(&shown)) {
-                for (x, (out, pixel)) in ((block * BLOCK_WIDTH) as i32..).zip(out.iter_mut().zip(row.as_chunks::<4>().0)) {
+                for (x, (out, pixel)) in
+                    ((block * BLOCK_WIDTH) as i32..).zip(out.iter_mut().zip(row.as_chunks::<4>().0))
+                {
                     let inside = bounds.left <= x && x < bounds.right && bounds.top <= y && y < bounds.bottom;
                     *out = if inside { kind.coverage(*pixel) } else { 0 };
                 }
@@ -632,7 +634,14 @@ impl Painter<'_, '_, '_> {
     }
 
     #[inline(always)]
-    fn fill_run_inner<S: Simd>(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT], color: [u8; 4]) {
+    fn fill_run_inner<S: Simd>(
+        &mut self,
+        simd: S,
+        start: usize,
+        end: usize,
+        rows: &[u8; BLOCK_HEIGHT],
+        color: [u8; 4],
+    ) {
         for (row, &coverage) in rows.iter().enumerate().take(self.rows) {
             if coverage == 0 {
                 continue;
@@ -653,9 +662,14 @@ impl Painter<'_, '_, '_> {
                 }
             }
             if !tail.is_empty() {
-                self.surface.with_row(row, last, #[inline(always)] |pixels| {
-                    over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
-                });
+                self.surface.with_row(
+                    row,
+                    last,
+                    #[inline(always)]
+                    |pixels| {
+                        over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
+                    },
+                );
             }
         }
     }
@@ -678,13 +692,18 @@ impl Painter<'_, '_, '_> {
                 if *mask == [0; BLOCK_WIDTH] {
                     continue;
                 }
-                self.surface.with_row(first_row + row, index, #[inline(always)] |pixels| {
-                    if color[3] == 255 {
-                        over_opaque_row(simd, pixels, color, mask);
-                    } else {
-                        over_solid_row(simd, pixels, color, mask);
-                    }
-                });
+                self.surface.with_row(
+                    first_row + row,
+                    index,
+                    #[inline(always)]
+                    |pixels| {
+                        if color[3] == 255 {
+                            over_opaque_row(simd, pixels, color, mask);
+                        } else {
+                            over_solid_row(simd, pixels, color, mask);
+                        }
+                    },
+                );
             }
             return;
         }
@@ -718,12 +737,17 @@ impl Painter<'_, '_, '_> {
                 continue;
             }
             let full = *mask == [255; BLOCK_WIDTH];
-            self.surface.with_row(first_row + row, index, #[inline(always)] |pixels| match (opaque, full) {
-                (true, true) => *pixels = *source,
-                (true, false) => mix_pixels_row(simd, pixels, source, mask),
-                (false, true) => over_pixels_full(simd, pixels, source),
-                (false, false) => over_pixels_row(simd, pixels, source, mask),
-            });
+            self.surface.with_row(
+                first_row + row,
+                index,
+                #[inline(always)]
+                |pixels| match (opaque, full) {
+                    (true, true) => *pixels = *source,
+                    (true, false) => mix_pixels_row(simd, pixels, source, mask),
+                    (false, true) => over_pixels_full(simd, pixels, source),
+                    (false, false) => over_pixels_row(simd, pixels, source, mask),
+                },
+            );
         }
     }
 }

@@ -30,7 +30,12 @@ pub(crate) struct Renderer {
 
 impl Renderer {
     /// Draws a recording onto a target.
-    pub(crate) fn render(&mut self, list: &DisplayList, target: &mut PixmapMut<'_>, settings: RenderSettings) -> Result<()> {
+    pub(crate) fn render(
+        &mut self,
+        list: &DisplayList,
+        target: &mut PixmapMut<'_>,
+        settings: RenderSettings,
+    ) -> Result<()> {
         if list.commands.is_empty() {
             return Ok(());
         }
@@ -53,11 +58,13 @@ impl Renderer {
         let chunks: &[prepare::Chunk] = chunks;
         let scratch = &self.bands;
         let stride = target.stride();
-        let jobs: Vec<_> = target.bytes_mut().chunks_mut(stride * band_height as usize).enumerate().take(bands).collect();
+        let jobs: Vec<_> =
+            target.bytes_mut().chunks_mut(stride * band_height as usize).enumerate().take(bands).collect();
         pool::for_each(settings.threads, jobs, |(index, rows)| {
             let mut own = scratch.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
             let top = index as u32 * band_height;
-            let surface = surface::Surface::new(rows, stride, 0, width as usize, band_height.min(height - top) as usize);
+            let surface =
+                surface::Surface::new(rows, stride, 0, width as usize, band_height.min(height - top) as usize);
             band::render(list, &plan, chunks, index, top as i32, surface, &mut own, settings.level);
             if let Ok(mut all) = scratch.lock() {
                 all.push(own);

@@ -11,7 +11,7 @@ pub(super) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) +
     }
     match pool(threads) {
         // One job at a time: a band that is slow must not hold back its neighbours.
-        Some(pool) => pool.install(|| jobs.into_par_iter().with_max_len(1).for_each(|job| work(job))),
+        Some(pool) => pool.install(|| jobs.into_par_iter().with_max_len(1).for_each(&work)),
         None => jobs.into_iter().for_each(work),
     }
 }

@@ -3,8 +3,10 @@
 #[path = "../oracle/mod.rs"]
 mod oracle;
 
+mod accuracy;
 #[cfg(feature = "cli")]
 mod cli;
+mod determinism;
 mod seeds_lines;
 mod seeds_polygons;
 #[cfg(all(feature = "svg", feature = "codec"))]

@@ -1,0 +1,78 @@
+//! One recording gives one image, whatever renders it. Tolerance 0.
+
+use rastrum::{
+    Antialias, BlendMode, Canvas, Color, FillRule, GradientStop, LineJoin, LinearGradient, Paint, Path, Rect,
+    RenderSettings, Shadow, SimdLevel, Stroke,
+};
+
+/// Shapes of all kinds over 200 × 150 pixels, from a seeded generator.
+fn draw(canvas: &mut Canvas<'_>, antialias: Antialias) {
+    let mut seed = 7_u32;
+    let mut random = |limit: f32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) as f32 / 16_777_216.0 * limit
+    };
+    canvas.clear(Color::WHITE);
+    let stops = [GradientStop::new(0.0, Color::RED), GradientStop::new(1.0, Color::from_rgba(0.0, 0.2, 1.0, 0.4))];
+    for (index, mode) in BlendMode::ALL.into_iter().enumerate() {
+        let mut path = Path::new();
+        path.move_to((random(200.0), random(150.0)));
+        for _ in 0..6 {
+            path.cubic_to(
+                (random(240.0) - 20.0, random(180.0) - 15.0),
+                (random(240.0) - 20.0, random(180.0) - 15.0),
+                (random(200.0), random(150.0)),
+            );
+        }
+        let rule = if index % 2 == 0 { FillRule::EvenOdd } else { FillRule::NonZero };
+        let color = Color::from_rgba(random(1.0), random(1.0), random(1.0), random(1.0));
+        let paint = match index % 3 {
+            0 => Paint::new(LinearGradient::new((10.0, 20.0), (180.0, 120.0), stops)),
+            _ => Paint::new(color),
+        };
+        let paint = paint.with_antialias(antialias).with_opacity(0.7);
+        canvas.save();
+        canvas.translate(random(8.0), random(8.0));
+        if index % 4 == 1 {
+            let mut clip = Path::new();
+            clip.circle((100.0, 75.0), 40.0 + random(40.0));
+            canvas.clip_path(&clip, FillRule::NonZero, antialias);
+        }
+        if index % 5 == 2 {
+            canvas.push_layer(0.6, mode);
+            canvas.fill_path(&path, rule, &paint);
+            canvas.pop_layer();
+        } else {
+            canvas.fill_path(&path, rule, paint.clone().with_blend_mode(mode));
+        }
+        canvas.stroke_path(&path, &Stroke::new(random(6.0)).with_join(LineJoin::Round), &paint);
+        canvas.restore();
+    }
+    canvas.set_shadow(Shadow { offset_x: 5.0, offset_y: 4.0, deviation: 3.0, color: Color::BLACK });
+    canvas.fill_round_rect(Rect::from_xywh(20.0, 90.5, 60.0, 40.0), 9.0, Color::GREEN);
+    canvas.set_shadow(None);
+    canvas.draw_pixel_line((0, 149), (199, 3), Color::BLACK);
+}
+
+fn render(settings: RenderSettings, antialias: Antialias) -> Vec<u8> {
+    let mut canvas = Canvas::with_settings(200, 150, settings).unwrap();
+    draw(&mut canvas, antialias);
+    canvas.into_pixmap().into_vec()
+}
+
+#[test]
+fn every_level_thread_count_and_band_height_gives_the_same_bytes() {
+    for antialias in [Antialias::Analytic, Antialias::Exact, Antialias::Supersample(4), Antialias::None] {
+        let settings = RenderSettings::default();
+        let expected = render(settings.with_level(SimdLevel::Scalar).with_threads(1), antialias);
+        assert!(expected.as_chunks::<4>().0.iter().any(|p| *p != [255; 4]), "nothing was drawn");
+        for level in SimdLevel::available() {
+            for threads in [1, 2, 3, 8] {
+                for band_height in [8, 32, 64] {
+                    let settings = settings.with_level(level).with_threads(threads).with_band_height(band_height);
+                    assert!(render(settings, antialias) == expected, "{antialias:?} differs with {settings:?}");
+                }
+            }
+        }
+    }
+}
