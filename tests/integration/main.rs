@@ -1,5 +1,7 @@
 //! Tests through the public API alone, against slow and obvious versions of the same.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 #[path = "../oracle/mod.rs"]
 mod oracle;
 
