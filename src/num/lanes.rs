@@ -45,7 +45,7 @@ pub(crate) fn min_i32<S: Simd>(a: i32x8<S>, b: i32x8<S>) -> i32x8<S> {
     a.min(b)
 }
 
-/// Truncation toward zero of lanes that are known to lie within ±2^31 .
+/// Truncation toward zero of lanes that are known to lie within ±2^31.
 #[inline(always)]
 #[expect(clippy::disallowed_methods, reason = "in range, every level truncates alike")]
 pub(crate) fn truncate_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {

@@ -7,8 +7,8 @@
 //! A piece of an edge inside one pixel that climbs d/256 of its height, at distances f_in and f_out
 //! from the pixel's left side (in 1/256), winding s, adds s·(512·d − a) to its own column and s·a to
 //! the next one, where a = d·(f_in + f_out). Summed from the left, a pixel then holds 2 · 256² = [`FULL`]
-//! times its covered area, and all pixels right of the piece s·d·512. Everything is an integer: the order
-//! of edges does not matter.
+//! times its covered area, and all pixels right of the piece s·d·512. What is added up are integers: the
+//! order of edges does not matter.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
@@ -27,15 +27,6 @@ pub(crate) type Column = [i32; BLOCK_HEIGHT];
 /// An edge that runs over more columns than this in a row is walked row by row: eight lanes would
 /// mostly idle.
 const FLAT_COLUMNS_PER_ROW: f32 = 10.0;
-
-impl Accumulator {
-    /// Whether some block of strip `index` is occupied.
-    pub(crate) fn is_occupied(&self, index: usize) -> bool {
-        self.occupied
-            .get(index * self.words..(index + 1) * self.words)
-            .is_some_and(|words| words.iter().any(|word| *word != 0))
-    }
-}
 
 /// Accumulators of the strips of one band.
 #[derive(Debug, Default)]
@@ -63,6 +54,13 @@ impl Accumulator {
         self.columns.resize(self.stride * strips, [0; BLOCK_HEIGHT]);
         self.touched.resize(self.stride * strips, [0; 2]);
         self.occupied.resize(self.words * strips, 0);
+    }
+
+    /// Whether some block of strip `index` is occupied.
+    pub(crate) fn is_occupied(&self, index: usize) -> bool {
+        self.occupied
+            .get(index * self.words..(index + 1) * self.words)
+            .is_some_and(|words| words.iter().any(|word| *word != 0))
     }
 
     /// The accumulator of strip `index`, or `None` past the last.
@@ -125,23 +123,24 @@ impl StripCells<'_> {
         let total = dy.abs();
         let winding = dy.signum();
         let run = right - left;
+        // Heights in 1/512 of 1/256 pixel, so that what is rounded does not show.
         let mut climbed = 0;
         for (index, pair) in (first..=last).zip(0..) {
-            let boundary = (index + 1) << fixed::SHIFT;
+            let base = index << fixed::SHIFT;
+            let boundary = base + fixed::ONE;
             // How high the piece has climbed at the pixel's right side.
             let height = if index == last {
-                total
+                total * 512
             } else {
-                ((2 * i64::from(boundary - left) * i64::from(total) + i64::from(run)) / (2 * i64::from(run))) as i32
+                ((1024 * i64::from(boundary - left) * i64::from(total) + i64::from(run)) / (2 * i64::from(run))) as i32
             };
-            let d = height - climbed;
+            let cover = height - climbed;
             climbed = height;
-            let enter = left.max(index << fixed::SHIFT) - (index << fixed::SHIFT);
-            let leave = right.min(boundary) - (index << fixed::SHIFT);
-            let area = d * (enter + leave);
+            let (enter, leave) = (left.max(base) - base, right.min(boundary) - base);
+            let area = (cover * (enter + leave) + 256) >> 9;
             if let Some([here, next]) = columns.get_mut(pair..pair + 2).and_then(|c| c.first_chunk_mut::<2>()) {
                 if let (Some(here), Some(next)) = (here.get_mut(row), next.get_mut(row)) {
-                    *here = here.wrapping_add(winding * (512 * d - area));
+                    *here = here.wrapping_add(winding * (cover - area));
                     *next = next.wrapping_add(winding * area);
                 }
             }
@@ -149,8 +148,18 @@ impl StripCells<'_> {
     }
 }
 
+/// Fraction bits of x where an edge enters and leaves a strip: it is rounded there once more, and finer
+/// than its ends, so that this does not show.
+const FINE_SHIFT: u32 = 12;
+
+/// A difference of x in 20.12 fixed point, in 1/256 pixel.
+#[inline(always)]
+fn fine(x: i32) -> f32 {
+    x as f32 * (1.0 / 16.0)
+}
+
 /// Adds the part of an edge that lies in one strip, from (start_x, start_y) down to (end_x, end_y); `top` is
-/// the strip's top. All in fixed point. With `TOUCH`, notes which pixels it passes through.
+/// the strip's top. x in 20.12, y in 24.8 fixed point. With `TOUCH`, notes which pixels it passes through.
 #[inline(always)]
 pub(crate) fn add_piece<S: Simd, const TOUCH: bool>(
     simd: S,
@@ -161,77 +170,83 @@ pub(crate) fn add_piece<S: Simd, const TOUCH: bool>(
     top: i32,
 ) {
     let (low_x, high_x) = if start_x < end_x { (start_x, end_x) } else { (end_x, start_x) };
-    let first = low_x >> fixed::SHIFT;
-    let last = high_x >> fixed::SHIFT;
-    let (run, rise) = ((end_x - start_x) as f32, (end_y - start_y) as f32);
+    let first = low_x >> FINE_SHIFT;
+    let last = high_x >> FINE_SHIFT;
+    let (run, rise) = (fine(end_x - start_x), (end_y - start_y) as f32);
 
     let columns_count = (last - first) as f32;
     if columns_count * 256.0 > FLAT_COLUMNS_PER_ROW * rise && columns_count > 4.0 {
-        add_flat::<TOUCH>(cells, start_x, start_y, end_x, end_y, top, winding);
+        let round = |x: i32| (x + (1 << (FINE_SHIFT - fixed::SHIFT - 1))) >> (FINE_SHIFT - fixed::SHIFT);
+        add_flat::<TOUCH>(cells, round(start_x), start_y, round(end_x), end_y, top, winding);
         return;
     }
 
     cells.occupy(first as usize, last as usize + 1);
     let Some(columns) = cells.columns.get_mut(first as usize..last as usize + 2) else { return };
 
-    // Each row's part: from `upper` to `lower`, at x `upper_x` and `lower_x`.
+    // Each row's part: from `upper` to `lower`, at x `upper_x` and `lower_x` right of the first column.
+    // Everything below is float until a column's area and cover are rounded: x is then good to far less
+    // than 1/256 pixel, and signs are exact, so that what two edges share cancels.
     let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) + top;
     let start_y8 = i32x8::splat(simd, start_y);
     let end_y8 = i32x8::splat(simd, end_y);
-    let upper = min_i32(max_i32(rows, start_y8), end_y8);
-    let lower = min_i32(max_i32(rows + 256, start_y8), end_y8);
-    let dy = lower - upper;
+    let upper = min_i32(max_i32(rows, start_y8), end_y8) - start_y;
+    let lower = min_i32(max_i32(rows + 256, start_y8), end_y8) - start_y;
+    let dy = (lower - upper).to_float::<f32x8<S>>();
     let slope = run / rise;
-    let low8 = i32x8::splat(simd, low_x);
-    let high8 = i32x8::splat(simd, high_x);
-    let upper_x = round_f32((upper - start_y8).to_float::<f32x8<S>>() * slope) + start_x;
-    let lower_x = round_f32((lower - start_y8).to_float::<f32x8<S>>() * slope) + start_x;
-    let upper_x = min_i32(max_i32(upper_x, low8), high8);
-    let lower_x = min_i32(max_i32(lower_x, low8), high8);
-    let sign = i32x8::splat(simd, winding);
+    let base = first << FINE_SHIFT;
+    let low8 = f32x8::splat(simd, fine(low_x - base));
+    let high8 = f32x8::splat(simd, fine(high_x - base));
+    let start8 = f32x8::splat(simd, fine(start_x - base));
+    let upper_x = upper.to_float::<f32x8<S>>() * slope + start8;
+    let lower_x = lower.to_float::<f32x8<S>>() * slope + start8;
+    let upper_x = min_f32(max_f32(upper_x, low8), high8);
+    let lower_x = min_f32(max_f32(lower_x, low8), high8);
+    let sign = winding as f32;
 
     if first == last {
-        let base = first << fixed::SHIFT;
-        let area = dy * (upper_x + lower_x - 2 * base) * sign;
-        let cover = dy * sign * 512;
+        let area = round_f32(dy * sign * (upper_x + lower_x));
+        let cover = round_f32(dy * (512.0 * sign));
         if let [here, next, ..] = columns {
             (i32x8::load_array_ref(simd, here) + cover - area).store_array(here);
             (i32x8::load_array_ref(simd, next) + area).store_array(next);
         }
         if TOUCH {
-            touch(&mut cells.touched.get_mut(first as usize), rows_of(dy, simd));
+            touch(&mut cells.touched.get_mut(first as usize), rows_of(cover, simd));
         }
         return;
     }
 
-    let left = min_i32(upper_x, lower_x);
-    let right = max_i32(upper_x, lower_x);
+    let left = min_f32(upper_x, lower_x);
+    let right = max_f32(upper_x, lower_x);
     // How much a row's part climbs per unit of x.
     let steep = f32x8::splat(simd, rise / if run < 0.0 { -run } else { run });
-    let dy_float = dy.to_float::<f32x8<S>>();
     let zero = f32x8::splat(simd, 0.0);
-    let mut climbed = i32x8::splat(simd, 0);
+    let mut climbed = zero;
+    let mut covered = i32x8::splat(simd, 0);
     let mut carry = i32x8::splat(simd, 0);
-    let mut base = first << fixed::SHIFT;
+    let mut base = 0.0;
     let (body, spill) = columns.split_at_mut(columns.len() - 1);
     for (index, column) in body.iter_mut().enumerate() {
-        let boundary = base + fixed::ONE;
-        let boundary8 = i32x8::splat(simd, boundary);
+        let base8 = f32x8::splat(simd, base);
+        let boundary8 = base8 + 256.0;
         // How high the part has climbed at the column's right side.
-        let reach = (boundary8 - left).to_float::<f32x8<S>>() * steep;
-        let reach = round_f32(min_f32(max_f32(reach, zero), dy_float));
+        let reach = min_f32(max_f32((boundary8 - left) * steep, zero), dy);
         let height = right.simd_lt(boundary8).select(dy, reach);
         let d = (height - climbed) * sign;
         climbed = height;
-        let enter = max_i32(left, i32x8::splat(simd, base));
-        let leave = min_i32(right, boundary8);
-        let area = d * (enter + leave - 2 * base);
-        (i32x8::load_array_ref(simd, column) + (d * 512 - area) + carry).store_array(column);
+        // The sum of the covers is the rounded height, whatever each is rounded to.
+        let height = round_f32(height * (512.0 * sign));
+        let cover = height - covered;
+        covered = height;
+        let middle = max_f32(left, base8) + min_f32(right, boundary8) - 2.0 * base;
+        let area = round_f32(d * middle);
+        (i32x8::load_array_ref(simd, column) + (cover - area) + carry).store_array(column);
         carry = area;
         if TOUCH {
-            touch(&mut cells.touched.get_mut(first as usize + index), rows_of(d, simd));
+            touch(&mut cells.touched.get_mut(first as usize + index), rows_of(cover, simd));
         }
-        base = boundary;
+        base += 256.0;
     }
     if let Some(column) = spill.first_mut() {
         (i32x8::load_array_ref(simd, column) + carry).store_array(column);
@@ -261,13 +276,13 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
     for index in first.max(0)..(last + 1).min(strips as i32) {
         let strip_top = top + index * STRIP;
         let bottom = strip_top + STRIP;
-        let (mut start, mut end) = ((x0, y0), (x1, y1));
+        let (mut start, mut end) = ((x0 << 4, y0), (x1 << 4, y1));
         if let Some(line) = line {
             if y0 < strip_top {
-                start = (line.x_at(strip_top), strip_top);
+                start = (line.fine_x_at(strip_top), strip_top);
             }
             if y1 > bottom {
-                end = (line.x_at(bottom), bottom);
+                end = (line.fine_x_at(bottom), bottom);
             }
         }
         if let Some(mut strip) = cells.strip(index as usize) {
@@ -394,7 +409,7 @@ mod tests {
             for (column, (got, want)) in scalar.iter().zip(&expected).enumerate() {
                 for row in 0..8 {
                     let got = f64::from(got[row]) / f64::from(FULL);
-                    assert!((got - want[row]).abs() < 0.02, "{edge:?}: pixel ({column}, {row}) {got} {}", want[row]);
+                    assert!((got - want[row]).abs() < 0.004, "{edge:?}: pixel ({column}, {row}) {got} {}", want[row]);
                 }
             }
         }

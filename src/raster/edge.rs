@@ -46,6 +46,12 @@ impl EdgeLine {
         Self { x0: i64::from(x0), y0: i64::from(y0), slope }
     }
 
+    /// x at y in 20.12 fixed point, as [`x_at`](Self::x_at), for edges that are clipped to a surface.
+    #[inline(always)]
+    pub(crate) fn fine_x_at(self, y: i32) -> i32 {
+        ((self.x0 << 4) + ((self.slope * (i64::from(y) - self.y0) + (1 << 27)) >> 28)) as i32
+    }
+
     /// x at y, for y between the edge's ends: |slope · (y − y0)| ≤ |dx| · 2^32 < 2^62.
     #[inline(always)]
     pub(crate) fn x_at(self, y: i32) -> i32 {

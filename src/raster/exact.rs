@@ -53,7 +53,7 @@ pub(crate) fn resolve(
     rule: FillRule,
     scratch: &mut ExactScratch,
 ) {
-    let rows = take_touched(cells);
+    let rows = take_touched(cells) | rows_with_horizontal_edges(edges, top);
     if rows == 0 {
         return;
     }
@@ -96,6 +96,29 @@ fn take_touched(cells: &mut StripCells<'_>) -> u8 {
         }
     });
     rows
+}
+
+/// The rows inside which an outline goes on horizontally. Such edges are not listed, for they enclose nothing, but
+/// the cover that begins or ends with them reaches pixels that no other edge touches.
+///
+/// They show as ends inside a row that no other edge takes up: of each corner of an outline one edge arrives and one
+/// departs, so that the differences of a hash of their positions sum to zero.
+fn rows_with_horizontal_edges(edges: &[Edge], top: i32) -> u8 {
+    let mut sums = [0_u32; BLOCK_HEIGHT];
+    let mut add = |x: i32, y: i32, sign: u32| {
+        let row = (y - top) >> fixed::SHIFT;
+        if y & (fixed::ONE - 1) != 0
+            && let Some(sum) = usize::try_from(row).ok().and_then(|row| sums.get_mut(row))
+        {
+            let hash = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
+            *sum = sum.wrapping_add((hash ^ hash >> 15).wrapping_mul(sign));
+        }
+    };
+    for edge in edges {
+        add(edge.x0, edge.y0, 1);
+        add(edge.x1, edge.y1, u32::MAX);
+    }
+    sums.iter().enumerate().fold(0, |rows, (row, sum)| rows | u8::from(*sum != 0) << row)
 }
 
 /// Sets the cells of the given rows to zero.
@@ -167,18 +190,28 @@ fn resolve_row(
     }
 }
 
+/// Changes of order by less than 1/32 pixel do not move coverage visibly.
+const NEAR: i32 = 8;
+
 /// Where the first two neighbours change their order, or `bottom`. Never less than `thinnest` below `top`.
-fn first_crossing(active: &[Crossing], top: i32, bottom: i32, thinnest: i32) -> i32 {
+///
+/// `active` is sorted by x at the top. Neighbours that cross right there are swapped, so that each meets its
+/// neighbours below the crossing.
+fn first_crossing(active: &mut [Crossing], top: i32, bottom: i32, thinnest: i32) -> i32 {
     let mut cut = bottom;
-    for pair in active.windows(2) {
-        if let [a, b] = pair {
-            let (apart, past) = (i64::from(b.top_x - a.top_x), i64::from(a.bottom_x - b.bottom_x));
-            // Changes of order by less than 1/32 pixel do not move coverage visibly.
-            if past > 8 && apart > 8 {
-                let y = top + (i64::from(bottom - top) * apart / (apart + past)) as i32;
-                cut = cut.min(y);
+    let mut index = 0;
+    // Each swap mends the order at the bottom, so that there are no more swaps than crossings.
+    while let Some([a, b]) = active.get_mut(index..).and_then(|rest| rest.first_chunk_mut()) {
+        let (apart, past) = (i64::from(b.top_x - a.top_x), i64::from(a.bottom_x - b.bottom_x));
+        if past > i64::from(NEAR) {
+            if apart <= i64::from(NEAR) {
+                std::mem::swap(a, b);
+                index = index.saturating_sub(1);
+                continue;
             }
+            cut = cut.min(top + (i64::from(bottom - top) * apart / (apart + past)) as i32);
         }
+        index += 1;
     }
     cut.max(top + thinnest).min(bottom)
 }
