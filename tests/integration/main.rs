@@ -6,6 +6,7 @@
 mod oracle;
 
 mod accuracy;
+mod architecture;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;
