@@ -60,7 +60,8 @@ fn modules_use_only_floors_beneath_them() {
             continue;
         }
         let Some(own) = floor(module) else {
-            faults.push(format!("{}: the module {module} stands on no floor; name it in this test", relative.display()));
+            faults
+                .push(format!("{}: the module {module} stands on no floor; name it in this test", relative.display()));
             continue;
         };
         for name in used(&fs::read_to_string(&file).unwrap()) {
@@ -68,7 +69,9 @@ fn modules_use_only_floors_beneath_them() {
             match floor(&name) {
                 _ if name == module => {}
                 Some(other) if other < own => {}
-                Some(_) => faults.push(format!("{}: {module} uses {name}, which is not beneath it", relative.display())),
+                Some(_) => {
+                    faults.push(format!("{}: {module} uses {name}, which is not beneath it", relative.display()))
+                }
                 // A macro or a grouped import: write the module's own path, so that this test can read it.
                 None => faults.push(format!("{}: `crate::{name}` names no floor", relative.display())),
             }
