@@ -167,27 +167,29 @@ fn resolve_row(
         rest = &rest[rest.iter().position(|y| *y == bottom).unwrap_or(rest.len())..];
         let mut top = *top;
         while top < bottom {
-            // Where ends closer together than the thinnest slab are passed over, the parts that cross the
-            // slab's middle stand for it: their windings close.
-            let middle = top + (bottom - top) / 2;
-            active.clear();
-            for part in parts.iter().filter(|part| part.y0 <= middle && middle < part.y1) {
-                let (y0, y1) = (part.y0.max(top), part.y1.min(bottom));
-                active.push(Crossing { top_x: part.line.x_at(y0), bottom_x: part.line.x_at(y1), part: *part });
-            }
-            active.sort_unstable_by_key(|c| (c.top_x, c.bottom_x));
+            enter(parts, top, bottom, active);
             let cut = first_crossing(active, top, bottom, thinnest);
             if cut < bottom {
-                let middle = top + (cut - top) / 2;
-                active.retain(|c| c.part.y0 <= middle && middle < c.part.y1);
-                for crossing in active.iter_mut() {
-                    crossing.bottom_x = crossing.part.line.x_at(cut.min(crossing.part.y1));
-                }
+                enter(parts, top, cut, active);
             }
             add_slab(cells, row, active, top, cut, rule);
             top = cut;
         }
     }
+}
+
+/// The parts that cross a slab, by where they enter it.
+///
+/// Where ends closer together than the thinnest slab are passed over, the parts that cross the slab's
+/// middle stand for it: along one scanline, windings close.
+fn enter(parts: &[Part], top: i32, bottom: i32, active: &mut Vec<Crossing>) {
+    let middle = top + (bottom - top) / 2;
+    active.clear();
+    active.extend(parts.iter().filter(|part| part.y0 <= middle && middle < part.y1).map(|part| {
+        let (y0, y1) = (part.y0.max(top), part.y1.min(bottom));
+        Crossing { top_x: part.line.x_at(y0), bottom_x: part.line.x_at(y1), part: *part }
+    }));
+    active.sort_unstable_by_key(|c| (c.top_x, c.bottom_x));
 }
 
 /// Changes of order by less than 1/32 pixel do not move coverage visibly.
