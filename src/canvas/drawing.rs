@@ -274,8 +274,12 @@ impl Canvas<'_> {
         }
     }
 
-    /// Stores a path's outline, with the device pixels that filling it can touch.
+    /// Stores a path's outline, with the device pixels that filling it can touch. A singular transform leaves no area,
+    /// and nothing is filled: not even the slivers that rounding would make of it.
     pub(super) fn record_fill(&mut self, path: &Path, rule: FillRule) -> Option<(Geometry, IntRect)> {
+        if self.state.transform.is_singular() {
+            return None;
+        }
         let bounds = self.device_bounds(path, 0.0)?;
         let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
         Some((Geometry::Fill { verbs, points, transform: self.state.transform, rule }, bounds))
@@ -283,6 +287,10 @@ impl Canvas<'_> {
 
     fn record_stroke(&mut self, path: &Path, stroke: &Stroke) -> Option<(Geometry, IntRect)> {
         if !(stroke.width >= 0.0 && stroke.width.is_finite()) {
+            return None;
+        }
+        // As for fills; but a hairline is a pixel wide at any transform.
+        if stroke.width > 0.0 && self.state.transform.is_singular() {
             return None;
         }
         // How far from the path the pen reaches: half its width, more at mitres and square caps.
