@@ -327,20 +327,25 @@ fn accumulate_inner<S: Simd>(
     }
     let top = frame.top << 8;
     let grid = match antialias {
-        Antialias::Analytic => {
-            for edge in edges {
-                cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips);
+        Antialias::Analytic | Antialias::Exact => {
+            let crowded = exact::crowded_strips(edges, top, frame.strips);
+            if antialias == Antialias::Analytic && crowded == 0 {
+                for edge in edges {
+                    cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips);
+                }
+                return rule.into();
             }
-            return rule.into();
-        }
-        Antialias::Exact => {
             for edge in edges {
                 cell::add_edge::<S, true>(simd, &mut scratch.cells, *edge, top, frame.strips);
             }
             for strip in 0..frame.strips {
-                if let Some(mut cells) = scratch.cells.strip(strip) {
+                let Some(mut cells) = scratch.cells.strip(strip) else { break };
+                let is_crowded = crowded >> strip & 1 == 1;
+                if antialias == Antialias::Exact || is_crowded {
                     let strip_top = top + ((strip * BLOCK_HEIGHT) << 8) as i32;
-                    exact::resolve(&mut cells, edges, strip_top, rule, &mut scratch.exact);
+                    exact::resolve(&mut cells, edges, strip_top, rule, is_crowded, &mut scratch.exact);
+                } else {
+                    exact::take_touched(&mut cells);
                 }
             }
             return rule.into();
