@@ -6,6 +6,7 @@
 mod oracle;
 
 mod accuracy;
+mod bad_input;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;
