@@ -7,6 +7,7 @@ mod oracle;
 
 mod accuracy;
 mod bad_input;
+mod canvas;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;
