@@ -68,7 +68,8 @@ impl Canvas<'_> {
     }
 
     /// Starts a layer: what is drawn up to [`pop_layer`](Self::pop_layer) becomes one picture, which is then drawn with
-    /// `opacity` (0 ..= 1), `blend_mode` and the current clip. The transform goes on; the state is saved.
+    /// `opacity` (0 ..= 1), `blend_mode` and the current clip. The transform goes on; the state is saved. Layers may
+    /// nest to any depth; those with pixels of their own take memory for the bands in work.
     pub fn push_layer(&mut self, opacity: f32, blend_mode: BlendMode) {
         let layer = LayerStart {
             bounds: self.state.bounds,

@@ -3,7 +3,7 @@
 use super::Canvas;
 use crate::blend::BlendMode;
 use crate::color::Color;
-use crate::display_list::{ClipId, Command, DisplayList, Draw, Geometry, Paint, Shadow};
+use crate::display_list::{ClipId, Command, Draw, Geometry, Paint, Shadow, Span};
 use crate::geom::{IntRect, Point, Rect, Transform};
 use crate::paint::PreparedPaint;
 use crate::path::{LineCap, LineJoin, Path, Radii, Stroke};
@@ -22,8 +22,7 @@ impl Canvas<'_> {
 
     /// Paints every pixel within the clip.
     pub fn fill(&mut self, paint: impl Into<Paint>) {
-        let bounds = self.state.bounds;
-        self.draw(paint.into(), |_| Some((Geometry::Bounds, bounds)));
+        self.draw(paint.into(), |canvas| Some((Geometry::Bounds, canvas.state.bounds)));
     }
 
     /// Fills the inside of a path.
@@ -170,7 +169,13 @@ impl Canvas<'_> {
         if let Some(shadow) = self.state.shadow {
             self.draw_shadow(shadow, &paint, &mut geometry);
         }
-        let Some((geometry, bounds)) = geometry(self) else { return };
+        if let Some((geometry, bounds)) = geometry(self) {
+            self.record(&paint, geometry, bounds);
+        }
+    }
+
+    /// Records a draw under the current state.
+    fn record(&mut self, paint: &Paint, geometry: Geometry, bounds: IntRect) {
         let bounds = bounds.intersect(self.state.bounds);
         if bounds.is_empty() {
             return;
@@ -191,8 +196,8 @@ impl Canvas<'_> {
         }));
     }
 
-    /// Records the shadow of a draw: the same draw in a recording of its own, on a surface that reaches as far as
-    /// the blur.
+    /// Records the shadow of a draw: the same draw in a recording of its own, on a surface that holds what of it the
+    /// blur brings into view.
     fn draw_shadow(
         &mut self,
         shadow: super::Shadow,
@@ -220,32 +225,31 @@ impl Canvas<'_> {
             visible.bottom - dy + margin,
         );
         self.state.bounds = reach;
-        let extent = geometry(self).map_or(IntRect::EMPTY, |(_, bounds)| bounds.intersect(reach));
-        let region = IntRect::from_ltrb(
-            extent.left.saturating_sub(margin),
-            extent.top.saturating_sub(margin),
-            extent.right.saturating_add(margin),
-            extent.bottom.saturating_add(margin),
-        )
-        .intersect(reach);
-        self.list = DisplayList::default();
-        if !extent.is_empty() && !region.is_empty() {
-            let shift = Transform::from_translate(-(region.left as f32), -(region.top as f32));
+        let mut extent = IntRect::EMPTY;
+        if let Some((mut geometry, bounds)) = geometry(self) {
+            extent = bounds.intersect(reach);
+            self.move_geometry(&mut geometry, -extent.left, -extent.top);
+            let shift = Transform::from_translate(-(extent.left as f32), -(extent.top as f32));
             self.state.transform = outer.transform.post_concat(shift);
-            self.state.bounds = IntRect::from_xywh(0, 0, region.width(), region.height());
+            self.state.bounds = IntRect::from_xywh(0, 0, extent.width(), extent.height());
             let plain = Paint { blend_mode: BlendMode::SourceOver, ..paint.clone() };
-            self.draw(plain, |canvas: &mut Self| geometry(canvas));
+            self.record(&plain, geometry, self.state.bounds);
         }
         let list = std::mem::replace(&mut self.list, outer_list);
         self.state = outer;
-        let bounds = IntRect::from_ltrb(region.left + dx, region.top + dy, region.right + dx, region.bottom + dy);
-        let bounds = bounds.intersect(visible);
+        let bounds = IntRect::from_ltrb(
+            extent.left + dx - margin,
+            extent.top + dy - margin,
+            extent.right + dx + margin,
+            extent.bottom + dy + margin,
+        )
+        .intersect(visible);
         if list.commands.is_empty() || bounds.is_empty() {
             return;
         }
         self.list.commands.push(Command::Shadow(Shadow {
             list: Box::new(list),
-            region,
+            extent,
             offset: (dx, dy),
             deviation,
             color: shadow.color,
@@ -255,8 +259,27 @@ impl Canvas<'_> {
         }));
     }
 
-    /// Stores a path's outline, with the device pixels that filling it can touch.
+    /// Moves a recorded geometry by whole device pixels.
+    fn move_geometry(&mut self, geometry: &mut Geometry, dx: i32, dy: i32) {
+        match geometry {
+            Geometry::Fill { transform, .. } | Geometry::Stroke { transform, .. } => {
+                *transform = transform.post_concat(Transform::from_translate(dx as f32, dy as f32));
+            }
+            Geometry::Spans((first, end)) => {
+                for span in self.list.spans.get_mut(*first as usize..*end as usize).unwrap_or(&mut []) {
+                    *span = Span { y: span.y + dy, start: span.start + dx, end: span.end + dx };
+                }
+            }
+            Geometry::Bounds => {}
+        }
+    }
+
+    /// Stores a path's outline, with the device pixels that filling it can touch. A singular transform leaves no area,
+    /// and nothing is filled: not even the slivers that rounding would make of it.
     pub(super) fn record_fill(&mut self, path: &Path, rule: FillRule) -> Option<(Geometry, IntRect)> {
+        if self.state.transform.is_singular() {
+            return None;
+        }
         let bounds = self.device_bounds(path, 0.0)?;
         let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
         Some((Geometry::Fill { verbs, points, transform: self.state.transform, rule }, bounds))
@@ -264,6 +287,10 @@ impl Canvas<'_> {
 
     fn record_stroke(&mut self, path: &Path, stroke: &Stroke) -> Option<(Geometry, IntRect)> {
         if !(stroke.width >= 0.0 && stroke.width.is_finite()) {
+            return None;
+        }
+        // As for fills; but a hairline is a pixel wide at any transform.
+        if stroke.width > 0.0 && self.state.transform.is_singular() {
             return None;
         }
         // How far from the path the pen reaches: half its width, more at mitres and square caps.

@@ -138,7 +138,7 @@ impl<'a> Canvas<'a> {
     /// when it closes.
     ///
     /// # Errors
-    /// [`Error::Limit`](crate::Error::Limit) if there is no memory for a shadow.
+    /// [`Error::Limit`](crate::Error::Limit) if there is no memory for a shadow; all else is drawn.
     pub fn flush(&mut self) -> Result<()> {
         if !self.layers.is_empty() {
             return Ok(());

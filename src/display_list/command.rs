@@ -91,10 +91,10 @@ pub(crate) struct LayerStart {
 /// A blurred, tinted, moved copy of what a list draws.
 #[derive(Clone, Debug)]
 pub(crate) struct Shadow {
-    /// What casts it, moved so that `region` starts at (0, 0).
+    /// What casts it, moved so that `extent` starts at (0, 0).
     pub(crate) list: Box<DisplayList>,
-    /// The device pixels from which the shadow is made.
-    pub(crate) region: IntRect,
+    /// The device pixels of what casts it.
+    pub(crate) extent: IntRect,
     /// In device pixels.
     pub(crate) offset: (i32, i32),
     /// The Gaussian's standard deviation, in device pixels.

@@ -129,6 +129,13 @@ impl Transform {
         self.to_f64().iter().all(|v| v.is_finite())
     }
 
+    /// Whether it flattens the plane to a line or a point: it has no inverse.
+    pub(crate) fn is_singular(self) -> bool {
+        let [a, b, c, d, ..] = self.to_f64();
+        // Products of two `f32` are exact in `f64`.
+        a * d == b * c
+    }
+
     /// Whether it changes nothing.
     pub fn is_identity(self) -> bool {
         self == Self::IDENTITY

@@ -6,7 +6,7 @@
 //! the row is cut at edge ends and at crossings into slabs in which the edges keep their order, the rule
 //! picks the edges that separate inside from outside, and those alone are accumulated again.
 
-use super::cell::StripCells;
+use super::cell::{FULL, StripCells};
 use super::edge::{Edge, EdgeLine};
 use super::sample::inside;
 use crate::num::fixed;
@@ -27,6 +27,26 @@ pub(crate) struct ExactScratch {
     active: Vec<Crossing>,
 }
 
+/// From so many edges in a strip on, the sums of their areas could leave the 32 bits of a cell.
+const CROWD: u32 = (i32::MAX / FULL) as u32;
+
+/// The strips (as bits) of a band with so many edges that their cells' sums mean nothing, so that all rows
+/// have to be resolved. `top` is the band's top in fixed point.
+pub(crate) fn crowded_strips(edges: &[Edge], top: i32, strips: usize) -> u128 {
+    if edges.len() < CROWD as usize {
+        return 0;
+    }
+    let mut counts = [0_u32; 128];
+    for edge in edges {
+        let (_, y0, _, y1, _) = edge.downward();
+        let strip = |y: i32| ((y - top) / (BLOCK_HEIGHT as i32 * fixed::ONE)).max(0) as usize;
+        for count in counts.iter_mut().take(strips.min(strip(y1 - 1) + 1)).skip(strip(y0)) {
+            *count += 1;
+        }
+    }
+    counts.iter().enumerate().fold(0, |bits, (strip, count)| bits | u128::from(*count >= CROWD) << strip)
+}
+
 /// The part of an edge in one row.
 #[derive(Clone, Copy, Debug)]
 struct Part {
@@ -44,16 +64,18 @@ struct Crossing {
     part: Part,
 }
 
-/// Replaces the cells of rows in which some pixel is touched twice by exact ones. `top` is the strip's
-/// top in fixed point; `edges` are all that were added to it.
+/// Replaces the cells of rows in which some pixel is touched twice by exact ones, or those of all rows. `top` is
+/// the strip's top in fixed point; `edges` are all that were added to it.
 pub(crate) fn resolve(
     cells: &mut StripCells<'_>,
     edges: &[Edge],
     top: i32,
     rule: FillRule,
+    all_rows: bool,
     scratch: &mut ExactScratch,
 ) {
-    let rows = take_touched(cells) | rows_with_horizontal_edges(edges, top);
+    let all = if all_rows { 0xff } else { 0 };
+    let rows = take_touched(cells) | rows_with_horizontal_edges(edges, top) | all;
     if rows == 0 {
         return;
     }
@@ -85,7 +107,7 @@ pub(crate) fn resolve(
 }
 
 /// The rows with a pixel that two edges touch; clears the marks.
-fn take_touched(cells: &mut StripCells<'_>) -> u8 {
+pub(crate) fn take_touched(cells: &mut StripCells<'_>) -> u8 {
     let mut rows = 0;
     for_occupied(cells.occupied, |block| {
         let start = block * BLOCK_WIDTH;

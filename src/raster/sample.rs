@@ -67,6 +67,10 @@ pub(crate) fn add_samples(
                 _ => {}
             }
         }
+        // Edges right of everything that can be drawn are not listed: what is inside stays so.
+        if inside(around, rule) {
+            add_span(cells, pixel_row, start, i32::MAX, n);
+        }
     }
 }
 

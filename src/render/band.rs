@@ -43,7 +43,8 @@ pub(super) struct BandScratch {
     clips: ClipCache,
 }
 
-/// The pixels of an open layer in this band.
+/// The pixels of an open layer in this band. They take memory from the first draw on: layers that only hold
+/// layers can be as deep as anyone likes.
 #[derive(Debug, Default)]
 struct LayerBuffer {
     data: Vec<u8>,
@@ -52,14 +53,19 @@ struct LayerBuffer {
 }
 
 impl LayerBuffer {
-    fn reset(&mut self, bounds: IntRect, rows: usize) {
+    fn reset(&mut self, bounds: IntRect) {
         self.first_block = bounds.left.max(0) as usize / BLOCK_WIDTH;
         self.blocks = (bounds.right.max(0) as usize).div_ceil(BLOCK_WIDTH).saturating_sub(self.first_block);
         self.data.clear();
-        self.data.resize(self.blocks * ROW_BYTES * rows, 0);
+    }
+
+    /// Whether nothing was drawn on it.
+    fn is_untouched(&self) -> bool {
+        self.data.is_empty()
     }
 
     fn surface(&mut self, rows: usize) -> Surface<'_> {
+        self.data.resize(self.blocks * ROW_BYTES * rows, 0);
         let width = self.blocks * BLOCK_WIDTH;
         Surface::new(&mut self.data, width * 4, self.first_block, width, rows)
     }
@@ -125,17 +131,21 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                 Command::Clip(id) => scratch.clips.edges.push((id.0, chunk_index, (item.start, item.end))),
                 Command::BeginLayer(LayerStart { bounds, .. }) | Command::BeginMask(bounds) => {
                     let mut layer = scratch.spare_layers.pop().unwrap_or_default();
-                    layer.reset(*bounds, frame.rows);
+                    layer.reset(*bounds);
                     scratch.layers.push(layer);
                 }
                 Command::EndLayer(layer) => {
                     let Some(mut pixels) = scratch.layers.pop() else { continue };
-                    paint_layer(simd, frame, target, scratch, layer, &mut pixels, edges);
+                    if !(pixels.is_untouched() && layer.blend_mode == BlendMode::SourceOver) {
+                        paint_layer(simd, frame, target, scratch, layer, &mut pixels, edges);
+                    }
                     scratch.spare_layers.push(pixels);
                 }
                 Command::EndMask(bounds, kind) => {
                     let Some(mut mask) = scratch.layers.pop() else { continue };
-                    if let Some(layer) = scratch.layers.last_mut() {
+                    if let Some(layer) = scratch.layers.last_mut()
+                        && !layer.is_untouched()
+                    {
                         mask_layer(simd, frame, layer, &mut mask, *bounds, *kind);
                     }
                     scratch.spare_layers.push(mask);
@@ -327,20 +337,25 @@ fn accumulate_inner<S: Simd>(
     }
     let top = frame.top << 8;
     let grid = match antialias {
-        Antialias::Analytic => {
-            for edge in edges {
-                cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips);
+        Antialias::Analytic | Antialias::Exact => {
+            let crowded = exact::crowded_strips(edges, top, frame.strips);
+            if antialias == Antialias::Analytic && crowded == 0 {
+                for edge in edges {
+                    cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips);
+                }
+                return rule.into();
             }
-            return rule.into();
-        }
-        Antialias::Exact => {
             for edge in edges {
                 cell::add_edge::<S, true>(simd, &mut scratch.cells, *edge, top, frame.strips);
             }
             for strip in 0..frame.strips {
-                if let Some(mut cells) = scratch.cells.strip(strip) {
+                let Some(mut cells) = scratch.cells.strip(strip) else { break };
+                let is_crowded = crowded >> strip & 1 == 1;
+                if antialias == Antialias::Exact || is_crowded {
                     let strip_top = top + ((strip * BLOCK_HEIGHT) << 8) as i32;
-                    exact::resolve(&mut cells, edges, strip_top, rule, &mut scratch.exact);
+                    exact::resolve(&mut cells, edges, strip_top, rule, is_crowded, &mut scratch.exact);
+                } else {
+                    exact::take_touched(&mut cells);
                 }
             }
             return rule.into();

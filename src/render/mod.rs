@@ -29,7 +29,7 @@ pub(crate) struct Renderer {
 }
 
 impl Renderer {
-    /// Draws a recording onto a target.
+    /// Draws a recording onto a target. What there is no memory for is left out, and the error says so.
     pub(crate) fn render(
         &mut self,
         list: &DisplayList,
@@ -42,13 +42,13 @@ impl Renderer {
         let settings = settings.resolved();
         let (width, height) = (target.width(), target.height());
         let frame = IntRect::from_xywh(0, 0, width, height);
-        let plan = plan::plan(list, frame, settings)?;
+        let (plan, planned) = plan::plan(list, frame, settings);
         let band_height = settings.band_height;
         let bands = height.div_ceil(band_height) as usize;
 
         let chunk_count = prepare::chunk_count(list.commands.len(), settings.threads);
         self.chunks.resize_with(chunk_count.max(self.chunks.len()), prepare::Chunk::default);
-        let Some(chunks) = self.chunks.get_mut(..chunk_count) else { return Ok(()) };
+        let Some(chunks) = self.chunks.get_mut(..chunk_count) else { return planned };
         let ranges = prepare::split(list.commands.len(), chunk_count);
         let jobs: Vec<_> = chunks.iter_mut().zip(ranges).collect();
         pool::for_each(settings.threads, jobs, |(chunk, range)| {
@@ -70,6 +70,6 @@ impl Renderer {
                 all.push(own);
             }
         });
-        Ok(())
+        planned
     }
 }

@@ -33,26 +33,34 @@ impl Plan {
     }
 }
 
-/// Draws what `list`'s effects need.
-pub(super) fn plan(list: &DisplayList, frame: IntRect, settings: RenderSettings) -> Result<Plan> {
+/// Draws what `list`'s effects need. Where memory is lacking for one, the others are drawn all the same.
+pub(super) fn plan(list: &DisplayList, frame: IntRect, settings: RenderSettings) -> (Plan, Result<()>) {
     let mut plan = Plan::default();
+    let mut result = Ok(());
     for (index, command) in list.commands.iter().enumerate() {
         if let Command::Shadow(shadow) = command {
             let bounds = shadow.bounds.intersect(frame);
-            if !bounds.is_empty() {
-                plan.shadows.push(PlannedShadow { command: index as u32, paint: picture(shadow, settings)?, bounds });
+            if bounds.is_empty() {
+                continue;
+            }
+            match picture(shadow, bounds, settings) {
+                Ok(paint) => plan.shadows.push(PlannedShadow { command: index as u32, paint, bounds }),
+                Err(error) => result = Err(error),
             }
         }
     }
-    Ok(plan)
+    (plan, result)
 }
 
-/// Draws a shadow's shapes, blurs their alpha and gives it the shadow's colour.
-fn picture(shadow: &Shadow, settings: RenderSettings) -> Result<PreparedPaint> {
-    let mut pixmap = Pixmap::new(shadow.region.width(), shadow.region.height())?;
-    Renderer::default().render(&shadow.list, &mut pixmap.as_mut(), settings)?;
-    let mut alpha: Vec<u8> = pixmap.data().as_chunks::<4>().0.iter().map(|[_, _, _, a]| *a).collect();
-    blur::gaussian(&mut alpha, shadow.region.width() as usize, shadow.deviation);
+/// Draws a shadow's shapes, blurs their alpha and gives it the shadow's colour, in the device pixels `bounds`.
+fn picture(shadow: &Shadow, bounds: IntRect, settings: RenderSettings) -> Result<PreparedPaint> {
+    let mut shapes = Pixmap::new(shadow.extent.width(), shadow.extent.height())?;
+    Renderer::default().render(&shadow.list, &mut shapes.as_mut(), settings)?;
+    let alpha: Vec<u8> = shapes.data().as_chunks::<4>().0.iter().map(|[_, _, _, a]| *a).collect();
+    let (dx, dy) = shadow.offset;
+    let seen = IntRect::from_ltrb(bounds.left - dx, bounds.top - dy, bounds.right - dx, bounds.bottom - dy);
+    let alpha = blur::gaussian(&alpha, shadow.extent, seen, shadow.deviation);
+    let mut pixmap = Pixmap::new(bounds.width(), bounds.height())?;
     let color = shadow.color.premultiply().map(u32::from);
     for (pixel, alpha) in pixmap.data_mut().as_chunks_mut::<4>().0.iter_mut().zip(alpha) {
         *pixel = color.map(|component| div255(component * u32::from(alpha)) as u8);
@@ -60,6 +68,6 @@ fn picture(shadow: &Shadow, settings: RenderSettings) -> Result<PreparedPaint> {
     let mut pattern = Pattern::new(Arc::new(pixmap));
     pattern.quality = FilterQuality::Nearest;
     (pattern.spread_x, pattern.spread_y) = (SpreadMode::Decal, SpreadMode::Decal);
-    let (x, y) = (shadow.region.left + shadow.offset.0, shadow.region.top + shadow.offset.1);
-    Ok(PreparedPaint::new(&pattern.into(), Transform::from_translate(x as f32, y as f32), 1.0))
+    let place = Transform::from_translate(bounds.left as f32, bounds.top as f32);
+    Ok(PreparedPaint::new(&pattern.into(), place, 1.0))
 }

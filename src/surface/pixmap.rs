@@ -248,7 +248,9 @@ impl<'a> PixmapMut<'a> {
     /// # Errors
     /// As [`Pixmap::from_vec`].
     pub fn from_bytes(data: &'a mut [u8], width: u32, height: u32) -> Result<Self> {
-        Self::from_bytes_with_stride(data, width, height, width as usize * 4)
+        Limits::default().check(width, height)?;
+        check_length(width, height, data.len())?;
+        Ok(Self { width, height, stride: width as usize * 4, data })
     }
 
     /// A view of a caller's buffer whose rows start `stride` bytes apart; bytes between rows are left

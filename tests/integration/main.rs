@@ -7,6 +7,8 @@ mod oracle;
 
 mod accuracy;
 mod architecture;
+mod bad_input;
+mod canvas;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;

@@ -1,0 +1,835 @@
+//! The canvas: state, clips, layers, masks, shadows, images, pixels and where they go.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use rastrum::raster::{circle, line};
+use rastrum::{
+    Antialias, BlendMode, Canvas, Color, Error, FillRule, FilterQuality, ImagePaint, IntRect, Limits, LineCap, Mask,
+    MaskKind, Paint, Path, Pixmap, PixmapMut, PixmapRef, Point, Rect, Shadow, Stroke, Transform,
+};
+
+use crate::oracle::{Pixel, Random};
+
+const HALF_BLACK: Color = Color::from_rgba(0.0, 0.0, 0.0, 0.5);
+
+/// A picture as text: a letter for the pure colours, `.` for transparent, `?` for all others.
+fn text(pixmap: &Pixmap) -> Vec<String> {
+    let letter = |pixel: &[u8; 4]| match pixel {
+        [0, 0, 0, 0] => '.',
+        [0, 0, 0, 255] => '#',
+        [255, 0, 0, 255] => 'R',
+        [0, 255, 0, 255] => 'G',
+        [0, 0, 255, 255] => 'B',
+        [255, 255, 255, 255] => 'W',
+        _ => '?',
+    };
+    pixmap.as_ref().rows().map(|row| row.as_chunks::<4>().0.iter().map(letter).collect()).collect()
+}
+
+fn drawn(width: u32, height: u32, draw: impl FnOnce(&mut Canvas<'_>)) -> Pixmap {
+    let mut canvas = Canvas::new(width, height).unwrap();
+    draw(&mut canvas);
+    canvas.into_pixmap()
+}
+
+fn rect(left: f32, top: f32, right: f32, bottom: f32) -> Rect {
+    Rect::from_ltrb(left, top, right, bottom)
+}
+
+/// The alpha values of row `y`.
+fn alphas(pixmap: &Pixmap, y: u32) -> Vec<u8> {
+    (0..pixmap.width()).map(|x| pixmap.pixel(x, y).unwrap()[3]).collect()
+}
+
+fn unit() -> Rect {
+    rect(0.0, 0.0, 1.0, 1.0)
+}
+
+// State
+
+#[test]
+fn restore_brings_back_transform_clip_and_shadow() {
+    let picture = drawn(8, 4, |canvas| {
+        canvas.translate(1.0, 1.0);
+        canvas.save();
+        canvas.translate(2.0, 0.0);
+        canvas.clip_rect(rect(0.0, 0.0, 1.0, 1.0), Antialias::Analytic);
+        canvas.set_shadow(Shadow { offset_x: 0.0, offset_y: 1.0, deviation: 0.0, color: Color::RED });
+        canvas.save();
+        canvas.translate(100.0, 100.0);
+        canvas.restore();
+        canvas.fill_rect(rect(0.0, 0.0, 3.0, 1.0), Color::GREEN);
+        canvas.restore();
+        canvas.fill_rect(unit(), Color::BLUE);
+        canvas.fill_rect(rect(4.0, 0.0, 6.0, 1.0), Color::BLACK);
+    });
+    assert_eq!(text(&picture), ["........", ".B.G.##.", "........", "........"]);
+}
+
+#[test]
+fn a_guard_restores_when_it_is_dropped() {
+    let picture = drawn(4, 2, |canvas| {
+        {
+            let mut canvas = canvas.saved();
+            canvas.translate(1.0, 0.0);
+            {
+                let mut canvas = canvas.saved();
+                canvas.translate(1.0, 1.0);
+                canvas.fill_rect(unit(), Color::RED);
+            }
+            canvas.fill_rect(unit(), Color::GREEN);
+        }
+        canvas.fill_rect(unit(), Color::BLUE);
+        assert!(canvas.current_transform().is_identity());
+    });
+    assert_eq!(text(&picture), ["BG..", "..R."]);
+}
+
+#[test]
+fn transforms_compose_from_the_outside_in() {
+    // x' = 3 + 2x, y' = 1 + y: the last call is applied first.
+    let moved_then_scaled = drawn(8, 3, |canvas| {
+        canvas.translate(3.0, 1.0);
+        canvas.scale(2.0, 1.0);
+        canvas.fill_rect(unit(), Color::BLACK);
+        assert_eq!(canvas.current_transform(), Transform::from_row(2.0, 0.0, 0.0, 1.0, 3.0, 1.0));
+    });
+    assert_eq!(text(&moved_then_scaled), ["........", "...##...", "........"]);
+    // x' = 2 (3 + x)
+    let scaled_then_moved = drawn(8, 3, |canvas| {
+        canvas.scale(2.0, 1.0);
+        canvas.translate(3.0, 1.0);
+        canvas.fill_rect(unit(), Color::BLACK);
+    });
+    assert_eq!(text(&scaled_then_moved), ["........", "......##", "........"]);
+    // A quarter turn clockwise: x' = −y, y' = x.
+    let turned = drawn(4, 4, |canvas| {
+        canvas.translate(4.0, 0.0);
+        canvas.rotate(90.0);
+        canvas.fill_rect(rect(1.0, 0.0, 4.0, 1.0), Color::BLACK);
+        canvas.fill_rect(rect(0.0, 3.0, 1.0, 4.0), Color::RED);
+    });
+    assert_eq!(text(&turned), ["R...", "...#", "...#", "...#"]);
+    let replaced = drawn(4, 1, |canvas| {
+        canvas.scale(9.0, 9.0);
+        canvas.transform(Transform::from_translate(7.0, 7.0));
+        canvas.set_transform(Transform::from_translate(2.0, 0.0));
+        canvas.transform(Transform::from_translate(1.0, 0.0));
+        canvas.fill_rect(unit(), Color::BLACK);
+    });
+    assert_eq!(text(&replaced), ["...#"]);
+}
+
+// Clips
+
+#[test]
+fn a_clips_edge_is_antialiased_and_clips_multiply() {
+    let picture = drawn(6, 1, |canvas| {
+        canvas.clip_rect(rect(1.5, 0.0, 4.25, 1.0), Antialias::Analytic);
+        canvas.fill(Color::BLACK);
+    });
+    // Halves and quarters of 255, rounded.
+    assert_eq!(alphas(&picture, 0), [0, 128, 255, 255, 64, 0]);
+    let picture = drawn(6, 1, |canvas| {
+        canvas.clip_rect(rect(1.5, 0.0, 4.25, 1.0), Antialias::Analytic);
+        canvas.clip_rect(rect(0.0, 0.0, 5.0, 0.5), Antialias::Analytic);
+        canvas.fill(Color::BLACK);
+    });
+    assert_eq!(alphas(&picture, 0), [0, 64, 128, 128, 32, 0]);
+    // Without antialiasing a pixel belongs to the clip by its centre.
+    let picture = drawn(6, 1, |canvas| {
+        canvas.clip_rect(rect(1.5, 0.0, 4.25, 0.6), Antialias::None);
+        canvas.fill(Color::BLACK);
+    });
+    assert_eq!(alphas(&picture, 0), [0, 255, 255, 255, 0, 0]);
+}
+
+#[test]
+fn filling_a_clip_is_filling_its_path() {
+    let mut path = Path::new();
+    path.circle((20.0, 15.5), 11.0).circle((27.0, 17.0), 9.3);
+    for antialias in [Antialias::Analytic, Antialias::Exact, Antialias::Supersample(4), Antialias::None] {
+        for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+            let paint = Paint::new(Color::BLACK).with_antialias(antialias);
+            let filled = drawn(40, 30, |canvas| canvas.fill_path(&path, rule, &paint));
+            let clipped = drawn(40, 30, |canvas| {
+                canvas.clip_path(&path, rule, antialias);
+                canvas.fill(&paint);
+            });
+            assert!(filled == clipped, "{antialias:?} {rule:?}");
+            // Cut by pixels, both ways round.
+            let inner = |canvas: &mut Canvas<'_>| canvas.clip_rect(rect(10.0, 8.0, 30.0, 20.0), antialias);
+            let cut = drawn(40, 30, |canvas| {
+                inner(canvas);
+                canvas.fill_path(&path, rule, &paint);
+            });
+            let both = drawn(40, 30, |canvas| {
+                canvas.clip_path(&path, rule, antialias);
+                inner(canvas);
+                canvas.fill(&paint);
+            });
+            assert!(cut == both && cut != filled, "{antialias:?} {rule:?}");
+        }
+    }
+}
+
+#[test]
+fn clip_bounds_are_those_of_all_clips() {
+    let mut canvas = Canvas::new(20, 20).unwrap();
+    assert_eq!(canvas.clip_bounds(), IntRect::from_ltrb(0, 0, 20, 20));
+    canvas.clip_rect(rect(2.0, 3.0, 15.0, 12.0), Antialias::Analytic);
+    canvas.save();
+    canvas.clip_rect(rect(-5.0, 5.0, 10.0, 99.0), Antialias::Analytic);
+    assert_eq!(canvas.clip_bounds(), IntRect::from_ltrb(2, 5, 10, 12));
+    canvas.restore();
+    assert_eq!(canvas.clip_bounds(), IntRect::from_ltrb(2, 3, 15, 12));
+}
+
+/// Clips, saves and draws between which `pause` is called.
+fn draw_with_pauses(canvas: &mut Canvas<'_>, mut pause: impl FnMut(&mut Canvas<'_>)) {
+    let mut circle = Path::new();
+    circle.circle((20.0, 20.0), 15.0);
+    let mask = Mask::from_vec(2, 40, (0..80).map(|i| i * 3).collect()).unwrap();
+    canvas.clear(Color::WHITE);
+    canvas.clip_path(&circle, FillRule::NonZero, Antialias::Analytic);
+    pause(canvas);
+    canvas.save();
+    canvas.clip_rect(rect(5.5, 5.5, 30.0, 31.0), Antialias::Analytic);
+    canvas.fill(HALF_BLACK);
+    pause(canvas);
+    canvas.save();
+    canvas.clip_mask(mask, 12, 0);
+    canvas.fill(Color::RED);
+    pause(canvas);
+    canvas.fill(Color::from_rgba(0.0, 1.0, 0.0, 0.3));
+    canvas.restore();
+    pause(canvas);
+    canvas.fill_rect(rect(0.0, 22.0, 40.0, 25.3), Color::BLUE);
+    canvas.restore();
+    pause(canvas);
+    pause(canvas);
+    canvas.fill_rect(rect(0.0, 27.0, 40.0, 29.0), Color::GREEN);
+}
+
+#[test]
+fn clips_survive_a_flush_and_a_read() {
+    let whole = drawn(40, 40, |canvas| draw_with_pauses(canvas, |_| {}));
+    let flushed = drawn(40, 40, |canvas| draw_with_pauses(canvas, |canvas| canvas.flush().unwrap()));
+    assert!(whole == flushed);
+    let read = drawn(40, 40, |canvas| {
+        draw_with_pauses(canvas, |canvas| {
+            canvas.read_pixels(IntRect::from_xywh(0, 0, 4, 4)).unwrap();
+        });
+    });
+    assert!(whole == read);
+    assert!(whole.pixel(20, 28) == Some([0, 255, 0, 255]) && whole.pixel(2, 28) == Some([255; 4]));
+}
+
+#[test]
+fn a_mask_multiplies_by_its_values() {
+    let picture = drawn(6, 2, |canvas| {
+        canvas.clip_mask(Mask::from_vec(4, 1, vec![0, 64, 128, 255]).unwrap(), 1, 0);
+        canvas.fill(Color::BLACK);
+    });
+    assert_eq!(alphas(&picture, 0), [0, 0, 64, 128, 255, 0]);
+    assert_eq!(alphas(&picture, 1), [0; 6]);
+    let picture = drawn(6, 1, |canvas| {
+        canvas.clip_mask(Mask::from_vec(4, 1, vec![0, 64, 128, 255]).unwrap(), -1, 0);
+        canvas.fill(HALF_BLACK);
+    });
+    // 64, 128 and 255 of 255 times 128 (half of 255, rounded).
+    assert_eq!(alphas(&picture, 0), [32, 64, 128, 0, 0, 0]);
+}
+
+// Layers and masks
+
+#[test]
+fn a_layer_is_drawn_as_one_picture() {
+    // Two black squares that overlap, half transparent together: one grey. 255 · (1 − 128/255) = 127.
+    let picture = drawn(5, 1, |canvas| {
+        canvas.clear(Color::WHITE);
+        canvas.push_layer(0.5, BlendMode::SourceOver);
+        canvas.fill_rect(rect(0.0, 0.0, 3.0, 1.0), Color::BLACK);
+        canvas.fill_rect(rect(2.0, 0.0, 4.0, 1.0), Color::BLACK);
+        canvas.pop_layer();
+    });
+    let grey = Some([127, 127, 127, 255]);
+    assert_eq!([0, 1, 2, 3, 4].map(|x| picture.pixel(x, 0)), [grey, grey, grey, grey, Some([255; 4])]);
+    // Opaque and unblended it changes nothing, whatever is drawn inside.
+    let shapes = |canvas: &mut Canvas<'_>| {
+        canvas.fill_circle((12.0, 10.0), 7.5, Color::RED);
+        canvas.stroke_circle((15.0, 12.0), 6.0, &Stroke::new(2.5), Color::BLUE);
+    };
+    let plain = drawn(30, 24, shapes);
+    let layered = drawn(30, 24, |canvas| {
+        canvas.push_layer(1.0, BlendMode::SourceOver);
+        canvas.push_layer(1.0, BlendMode::SourceOver);
+        shapes(canvas);
+        canvas.pop_layer();
+        canvas.pop_layer();
+    });
+    assert!(plain == layered);
+}
+
+#[test]
+fn a_layer_blends_by_its_mode() {
+    let blended = |mode| {
+        let picture = drawn(2, 1, |canvas| {
+            canvas.clear(Color::from_rgb8(200, 100, 50));
+            canvas.push_layer(1.0, mode);
+            canvas.fill_rect(unit(), Color::from_rgb8(100, 200, 255));
+            canvas.pop_layer();
+        });
+        [0, 1].map(|x| picture.pixel(x, 0).unwrap())
+    };
+    let backdrop = [200, 100, 50, 255];
+    // 200 · 100 / 255 = 78.4, 100 · 200 / 255 = 78.4
+    assert_eq!(blended(BlendMode::Multiply), [[78, 78, 50, 255], backdrop]);
+    // 255 − 55 · 155 / 255 = 221.6
+    assert_eq!(blended(BlendMode::Screen), [[222, 222, 255, 255], backdrop]);
+    assert_eq!(blended(BlendMode::Plus), [[255, 255, 255, 255], backdrop]);
+    // What of the layer is empty clears as well.
+    assert_eq!(blended(BlendMode::Source), [[100, 200, 255, 255], [0; 4]]);
+    assert_eq!(blended(BlendMode::DestinationIn), [backdrop, [0; 4]]);
+    let empty = |mode| {
+        drawn(1, 1, |canvas| {
+            canvas.clear(Color::RED);
+            canvas.push_layer(1.0, mode);
+            canvas.pop_layer();
+        })
+        .pixel(0, 0)
+    };
+    assert_eq!(empty(BlendMode::Source), Some([0; 4]));
+    assert_eq!(empty(BlendMode::SourceIn), Some([0; 4]));
+    assert_eq!(empty(BlendMode::SourceOver), Some([255, 0, 0, 255]));
+    assert_eq!(empty(BlendMode::Multiply), Some([255, 0, 0, 255]));
+}
+
+#[test]
+fn a_clip_cuts_a_layer_once() {
+    // Each of the layer's two draws cut by itself would leave 128 + 128 · 127 / 255 = 192.
+    let picture = drawn(2, 1, |canvas| {
+        canvas.clip_rect(rect(0.0, 0.0, 0.5, 1.0), Antialias::Analytic);
+        canvas.push_layer(1.0, BlendMode::SourceOver);
+        canvas.fill(Color::BLACK);
+        canvas.fill(Color::BLACK);
+        canvas.pop_layer();
+    });
+    assert_eq!(alphas(&picture, 0), [128, 0]);
+}
+
+#[test]
+fn a_mask_hides_what_of_a_layer_it_does_not_show() {
+    let masked = |kind, draw: fn(&mut Canvas<'_>)| {
+        let picture = drawn(4, 1, |canvas| {
+            canvas.push_layer(1.0, BlendMode::SourceOver);
+            canvas.fill(Color::WHITE);
+            canvas.push_mask(kind);
+            draw(canvas);
+            canvas.pop_mask();
+            canvas.pop_layer();
+        });
+        alphas(&picture, 0)
+    };
+    let four = |canvas: &mut Canvas<'_>| {
+        canvas.fill_rect(rect(0.0, 0.0, 1.0, 1.0), Color::RED);
+        canvas.fill_rect(rect(1.0, 0.0, 2.0, 1.0), Color::from_rgba(1.0, 1.0, 1.0, 0.5));
+        canvas.fill_rect(rect(2.0, 0.0, 3.0, 1.0), Color::BLACK);
+    };
+    assert_eq!(masked(MaskKind::Alpha, four), [255, 128, 255, 0]);
+    // 0.2126 · 255 = 54.2; white at half alpha 128; black and nothing 0.
+    assert_eq!(masked(MaskKind::Luminance, four), [54, 128, 0, 0]);
+    assert_eq!(masked(MaskKind::Alpha, |_| {}), [0; 4]);
+    // Green and blue: 0.7152 · 255 = 182.4, 0.0722 · 255 = 18.4.
+    let two = |canvas: &mut Canvas<'_>| {
+        canvas.fill_rect(rect(0.0, 0.0, 1.0, 1.0), Color::GREEN);
+        canvas.fill_rect(rect(1.0, 0.0, 2.0, 1.0), Color::BLUE);
+    };
+    assert_eq!(masked(MaskKind::Luminance, two), [182, 18, 0, 0]);
+    // Draws after the mask are not masked; the clip inside a layer does not reach the mask.
+    let picture = drawn(4, 1, |canvas| {
+        canvas.push_layer(1.0, BlendMode::SourceOver);
+        canvas.clip_rect(rect(0.0, 0.0, 3.0, 1.0), Antialias::Analytic);
+        canvas.fill(Color::WHITE);
+        canvas.push_mask(MaskKind::Alpha);
+        canvas.fill_rect(rect(2.0, 0.0, 4.0, 1.0), Color::BLACK);
+        canvas.pop_mask();
+        canvas.fill_rect(unit(), Color::RED);
+        canvas.pop_layer();
+    });
+    assert_eq!(text(&picture), ["R.W."]);
+}
+
+// Pixels in the middle of drawing
+
+#[test]
+fn pixels_are_read_as_they_stand() {
+    let mut canvas = Canvas::new(4, 1).unwrap();
+    let all = IntRect::from_xywh(0, 0, 4, 1);
+    canvas.fill_rect(rect(0.0, 0.0, 2.0, 1.0), Color::RED);
+    assert_eq!(text(&canvas.read_pixels(all).unwrap()), ["RR.."]);
+    canvas.fill_rect(rect(1.0, 0.0, 3.0, 1.0), Color::GREEN);
+    assert_eq!(text(&canvas.read_pixels(all).unwrap()), ["RGG."]);
+    assert_eq!(text(&canvas.read_pixels(IntRect::from_ltrb(-1, 0, 2, 2)).unwrap()), [".RG", "..."]);
+    // Open layers and masks look as if they were closed, and stay open.
+    canvas.push_layer(1.0, BlendMode::SourceOver);
+    canvas.fill_rect(rect(0.0, 0.0, 4.0, 1.0), Color::BLUE);
+    assert_eq!(text(&canvas.read_pixels(all).unwrap()), ["BBBB"]);
+    canvas.push_mask(MaskKind::Alpha);
+    canvas.fill_rect(rect(2.0, 0.0, 3.0, 1.0), Color::BLACK);
+    assert_eq!(text(&canvas.read_pixels(all).unwrap()), ["RGB."]);
+    canvas.fill_rect(rect(3.0, 0.0, 4.0, 1.0), Color::BLACK);
+    canvas.pop_mask();
+    canvas.fill_rect(unit(), Color::BLACK);
+    canvas.pop_layer();
+    assert_eq!(text(&canvas.into_pixmap()), ["#GBB"]);
+}
+
+#[test]
+fn written_pixels_replace_what_is_there() {
+    let two = drawn(2, 1, |canvas| canvas.fill_rect(unit(), Color::GREEN));
+    let picture = drawn(6, 1, |canvas| {
+        canvas.clear(Color::RED);
+        // None of these matters.
+        canvas.translate(3.0, 3.0);
+        canvas.clip_rect(rect(0.0, 0.0, 0.0, 0.0), Antialias::Analytic);
+        canvas.set_shadow(Shadow { offset_x: 3.0, offset_y: 0.0, deviation: 0.0, color: Color::BLACK });
+        canvas.write_pixels(two.as_ref(), 1, 0).unwrap();
+        canvas.write_pixels(two.as_ref(), 5, 0).unwrap();
+        canvas.fill(Color::BLUE);
+    });
+    assert_eq!(text(&picture), ["RG.RRG"]);
+    // An open layer is written to, within its bounds, and drawn with its opacity. Red under half a green: 127, 128.
+    let picture = drawn(4, 1, |canvas| {
+        canvas.clear(Color::RED);
+        canvas.clip_rect(rect(1.0, 0.0, 4.0, 1.0), Antialias::Analytic);
+        canvas.push_layer(0.5, BlendMode::SourceOver);
+        canvas.write_pixels(two.as_ref(), 0, 0).unwrap();
+        canvas.write_pixels(two.as_ref(), 2, 0).unwrap();
+        canvas.pop_layer();
+    });
+    assert_eq!(picture.pixel(2, 0), Some([127, 128, 0, 255]));
+    assert_eq!(text(&picture), ["RR?R"]);
+}
+
+// Shadows
+
+#[test]
+fn a_sharp_shadow_is_the_shape_moved_and_coloured() {
+    let mut path = Path::new();
+    path.circle((12.3, 11.8), 6.0).rect(rect(9.0, 8.0, 14.5, 25.25));
+    let stroke = Stroke::new(2.5).with_cap(LineCap::Round);
+    let shapes: [(&str, &dyn Fn(&mut Canvas<'_>, Color)); 6] = [
+        ("fill", &|canvas, color| canvas.fill_path(&path, FillRule::EvenOdd, color)),
+        ("stroke", &|canvas, color| canvas.stroke_path(&path, &stroke, color)),
+        ("pixel circle", &|canvas, color| canvas.draw_pixel_circle((12, 12), 7, color)),
+        ("pixel line", &|canvas, color| canvas.draw_pixel_line((2, 3), (20, 25), color)),
+        ("aliased hairline", &|canvas, color| {
+            canvas.stroke_path(&path, &Stroke::new(0.0), Paint::new(color).with_antialias(Antialias::None));
+        }),
+        ("half transparent", &|canvas, color| canvas.fill_path(&path, FillRule::NonZero, color.with_opacity(0.5))),
+    ];
+    for (name, shape) in shapes {
+        for (dx, dy) in [(5, 3), (-4, 6), (0, -3), (30, 0)] {
+            let found = drawn(40, 34, |canvas| {
+                let (offset_x, offset_y) = (dx as f32, dy as f32);
+                canvas.set_shadow(Shadow { offset_x, offset_y, deviation: 0.0, color: Color::RED });
+                shape(canvas, Color::BLACK);
+            });
+            let expected = drawn(40, 34, |canvas| {
+                // Drawn beyond the canvas's edges before it is moved.
+                let moved = drawn(140, 134, |canvas| {
+                    let mask = drawn(140, 134, |canvas| shape(canvas, Color::RED));
+                    canvas.write_pixels(mask.as_ref(), dx, dy).unwrap();
+                });
+                canvas.write_pixels(moved.as_ref(), 0, 0).unwrap();
+                shape(canvas, Color::BLACK);
+            });
+            assert!(found == expected, "{name} by {dx}, {dy}");
+        }
+    }
+}
+
+#[test]
+fn a_blurred_shadow_is_the_shapes_convolution_with_a_gaussian() {
+    let (left, top, right, bottom) = (12, 10, 26, 19);
+    for deviation in [0.6, 1.3, 1.9, 2.5, 5.0] {
+        let found = drawn(44, 36, |canvas| {
+            canvas.set_shadow(Shadow { offset_x: 3.0, offset_y: 2.0, deviation, color: Color::BLACK });
+            let source = rect(left as f32, top as f32, right as f32, bottom as f32);
+            canvas.fill_rect(source, Color::WHITE);
+            canvas.set_shadow(None);
+            canvas.clear_rect(source);
+        });
+        // From 2 on three boxes of the widths that SVG gives stand for the Gaussian, with a deviation of their own: a box
+        // of n pixels has the variance (n² − 1) / 12.
+        let size = (f64::from(deviation) * 3.0 * (2.0 * std::f64::consts::PI).sqrt() / 4.0 + 0.5).floor();
+        let third = if size % 2.0 == 0.0 { size + 1.0 } else { size };
+        let boxes = ((2.0 * (size * size - 1.0) + third * third - 1.0) / 12.0).sqrt();
+        let (sigma, tolerance) = if deviation < 2.0 { (f64::from(deviation), 1.6) } else { (boxes, 4.0) };
+        let weight = |d: i32| (-f64::from(d * d) / (2.0 * sigma * sigma)).exp();
+        let total: f64 = (-40..=40).map(weight).sum();
+        let along = |at: i32, low: i32, high: i32| (low..high).map(|p| weight(at - p)).sum::<f64>() / total;
+        for y in 0..36 {
+            for x in 0..44 {
+                if (left..right).contains(&x) && (top..bottom).contains(&y) {
+                    continue;
+                }
+                let expected = 255.0 * along(x - 3, left, right) * along(y - 2, top, bottom);
+                let alpha = f64::from(found.pixel(x as u32, y as u32).unwrap()[3]);
+                assert!((alpha - expected).abs() < tolerance, "{deviation}: {alpha}, not {expected} at {x}, {y}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_clip_cuts_a_shadow_but_not_what_casts_it() {
+    let picture = drawn(8, 1, |canvas| {
+        canvas.set_shadow(Shadow { offset_x: 4.0, offset_y: 0.0, deviation: 0.0, color: Color::RED });
+        canvas.clip_rect(rect(2.0, 0.0, 7.0, 1.0), Antialias::Analytic);
+        canvas.fill_rect(rect(0.0, 0.0, 4.0, 1.0), Color::BLACK);
+    });
+    assert_eq!(text(&picture), ["..##RRR."]);
+    // What fills the whole clip has no edge: its shadow shows through it evenly.
+    let picture = drawn(6, 1, |canvas| {
+        canvas.clip_rect(rect(1.0, 0.0, 5.0, 1.0), Antialias::Analytic);
+        canvas.set_shadow(Shadow { offset_x: 2.0, offset_y: 0.0, deviation: 1.5, color: Color::BLACK });
+        canvas.fill(HALF_BLACK);
+    });
+    // 128 over 128: 128 + 128 · 127 / 255 = 191.7
+    assert_eq!(alphas(&picture, 0), [0, 192, 192, 192, 192, 0]);
+    // Clearing casts none.
+    let picture = drawn(4, 1, |canvas| {
+        canvas.set_shadow(Shadow { offset_x: 2.0, offset_y: 0.0, deviation: 0.0, color: Color::RED });
+        canvas.clear(Color::BLUE);
+        canvas.clear_rect(unit());
+    });
+    assert_eq!(text(&picture), [".BBB"]);
+}
+
+// Images
+
+fn two_by_two() -> Arc<Pixmap> {
+    Arc::new(drawn(2, 2, |canvas| {
+        canvas.fill_rect(rect(0.0, 0.0, 1.0, 1.0), Color::RED);
+        canvas.fill_rect(rect(1.0, 0.0, 2.0, 1.0), Color::GREEN);
+        canvas.fill_rect(rect(0.0, 1.0, 1.0, 2.0), Color::BLUE);
+    }))
+}
+
+#[test]
+fn an_image_goes_from_its_source_to_its_destination() {
+    let image = two_by_two();
+    let nearest = ImagePaint { quality: FilterQuality::Nearest, ..ImagePaint::default() };
+    let all = rect(0.0, 0.0, 2.0, 2.0);
+    let at = drawn(5, 4, |canvas| canvas.draw_image_at(&image, (1.0, 1.0), &ImagePaint::default()));
+    assert_eq!(text(&at), [".....", ".RG..", ".B...", "....."]);
+    let stretched = drawn(7, 4, |canvas| canvas.draw_image(&image, all, rect(1.0, 0.0, 7.0, 4.0), &nearest));
+    assert_eq!(text(&stretched), [".RRRGGG", ".RRRGGG", ".BBB...", ".BBB..."]);
+    let right_column =
+        drawn(4, 4, |canvas| canvas.draw_image(&image, rect(1.0, 0.0, 2.0, 2.0), rect(0.0, 0.0, 4.0, 4.0), &nearest));
+    assert_eq!(text(&right_column), ["GGGG", "GGGG", "....", "...."]);
+    // Half of the source does not exist: its part of the destination stays empty.
+    let beyond =
+        drawn(4, 2, |canvas| canvas.draw_image(&image, rect(-2.0, 0.0, 2.0, 2.0), rect(0.0, 0.0, 4.0, 2.0), &nearest));
+    assert_eq!(text(&beyond), ["..RG", "..B."]);
+    let turned = drawn(4, 4, |canvas| {
+        canvas.translate(4.0, 0.0);
+        canvas.rotate(90.0);
+        canvas.draw_image(&image, all, rect(0.0, 0.0, 4.0, 4.0), &nearest);
+    });
+    assert_eq!(text(&turned), ["BBRR", "BBRR", "..GG", "..GG"]);
+}
+
+#[test]
+fn bilinear_is_linear_between_pixel_centres_and_stays_in_its_source() {
+    let ramp = Pixmap::from_straight(3, 1, vec![0, 0, 0, 255, 255, 255, 255, 255, 40, 40, 40, 255]).unwrap();
+    let ramp = Arc::new(ramp);
+    let paint = ImagePaint::default();
+    let reds = |picture: &Pixmap| (0..8).map(|x| picture.pixel(x, 0).unwrap()[0]).collect::<Vec<_>>();
+    // Centres lie at (x + 0.5) / 4 − 0.5 = −0.375, −0.125, 0.125 … of the two pixels' distance.
+    let close = |found: Vec<u8>, expected: [f32; 8]| {
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((f32::from(*found) - expected).abs() <= 1.0, "{found}, not {expected}");
+        }
+    };
+    let source = rect(0.0, 0.0, 2.0, 1.0);
+    let picture = drawn(8, 1, |canvas| canvas.draw_image(&ramp, source, rect(0.0, 0.0, 8.0, 1.0), &paint));
+    close(reds(&picture), [0.0, 0.0, 31.9, 95.6, 159.4, 223.1, 255.0, 255.0]);
+    // The middle pixel alone: its neighbours do not bleed in.
+    let source = rect(1.0, 0.0, 2.0, 1.0);
+    let picture = drawn(8, 1, |canvas| canvas.draw_image(&ramp, source, rect(0.0, 0.0, 8.0, 1.0), &paint));
+    close(reds(&picture), [255.0; 8]);
+    // Opacity and mode: 255 · 128 / 255 over black.
+    let picture = drawn(8, 1, |canvas| {
+        canvas.clear(Color::BLACK);
+        let paint = ImagePaint { opacity: 0.5, blend_mode: BlendMode::Plus, ..paint };
+        canvas.draw_image(&ramp, source, rect(2.0, 0.0, 8.0, 1.0), &paint);
+    });
+    close(reds(&picture), [0.0, 0.0, 128.0, 128.0, 128.0, 128.0, 128.0, 128.0]);
+}
+
+// Pixel primitives
+
+fn set(picture: &Pixmap) -> BTreeSet<Pixel> {
+    let mut set = BTreeSet::new();
+    for y in 0..picture.height() {
+        set.extend((0..picture.width()).filter(|x| picture.pixel(*x, y) != Some([0; 4])).map(|x| (x as i32, y as i32)));
+    }
+    set
+}
+
+#[test]
+fn pixel_primitives_are_the_rasterizers_pixels_without_the_transform() {
+    let clip = IntRect::from_ltrb(0, 0, 30, 24);
+    let star = [(4, 20), (14, 2), (24, 20), (2, 8), (27, 8)];
+    let points: Vec<Point> = star.iter().map(|&(x, y)| Point::new(x as f32, y as f32 + 0.3)).collect();
+    let pixels = |draw: &dyn Fn(&mut Canvas<'_>)| {
+        let moved = drawn(30, 24, |canvas| {
+            canvas.transform(Transform::from_row(3.0, 1.0, -2.0, 0.5, 9.0, 9.0));
+            draw(canvas);
+        });
+        set(&moved)
+    };
+    let black = Color::BLACK;
+    assert_eq!(
+        pixels(&|canvas| canvas.draw_pixel_line((-5, 3), (40, 21), black)),
+        line::bresenham((-5, 3), (40, 21)).clipped(clip).collect()
+    );
+    assert_eq!(
+        pixels(&|canvas| canvas.draw_supercover_line((1, 3), (22, 21), black)),
+        line::supercover((1, 3), (22, 21)).clipped(clip).collect()
+    );
+    assert_eq!(
+        pixels(&|canvas| canvas.draw_pixel_polyline(&star, black)),
+        line::polyline(&star).clipped(clip).collect()
+    );
+    assert_eq!(pixels(&|canvas| canvas.draw_pixel_polygon(&star, black)), line::outline(&star).clipped(clip).collect());
+    assert_eq!(
+        pixels(&|canvas| canvas.draw_pixel_circle((20, 12), 11, black)),
+        circle::circle((20, 12), 11).clipped(clip).collect()
+    );
+    let disc = circle::filled_circle((20, 12), 11).clipped(clip);
+    assert_eq!(
+        pixels(&|canvas| canvas.fill_pixel_circle((20, 12), 11, black)),
+        disc.flat_map(|(y, columns)| columns.map(move |x| (x, y))).collect()
+    );
+    for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+        let filled = drawn(30, 24, |canvas| {
+            canvas.fill_polygon(&points, rule, Paint::new(black).with_antialias(Antialias::None));
+        });
+        assert_eq!(pixels(&|canvas| canvas.fill_pixel_polygon(&points, rule, black)), set(&filled), "{rule:?}");
+    }
+}
+
+#[test]
+fn a_pixel_met_twice_is_painted_once_and_clips_apply() {
+    let picture = drawn(5, 5, |canvas| {
+        canvas.clip_rect(rect(0.0, 0.0, 5.0, 3.0), Antialias::Analytic);
+        canvas.push_layer(0.5, BlendMode::SourceOver);
+        canvas.draw_pixel_polyline(&[(0, 1), (4, 1), (2, 1), (2, 4), (2, 0)], HALF_BLACK);
+        canvas.pop_layer();
+    });
+    // 128 · 128 / 255 = 64.3
+    assert_eq!(alphas(&picture, 1), [64; 5]);
+    assert_eq!(alphas(&picture, 0), [0, 0, 64, 0, 0]);
+    assert_eq!(alphas(&picture, 3), [0; 5]);
+}
+
+#[test]
+fn an_aliased_hairline_is_bresenhams() {
+    let picture = drawn(12, 8, |canvas| {
+        canvas.scale(2.0, 2.0);
+        let paint = Paint::new(Color::BLACK).with_antialias(Antialias::None);
+        canvas.draw_line((0.3, 0.2), (5.2, 3.1), &Stroke::new(0.0), paint);
+    });
+    // The pixels that hold (0.6, 0.4) and (10.4, 6.2), and the line between.
+    assert_eq!(set(&picture), line::bresenham((0, 0), (10, 6)).collect());
+}
+
+// Hit tests
+
+#[test]
+fn hits_are_where_a_drawing_covers_pixel_centres() {
+    let mut path = Path::new();
+    path.move_to((2.0, 3.0))
+        .cubic_to((20.0, -6.0), (-2.0, 22.0), (15.0, 12.0))
+        .quad_to((18.0, 2.0), (8.0, 6.0))
+        .close();
+    path.circle((9.0, 8.0), 4.0);
+    let stroke = Stroke::new(2.0);
+    let transform = Transform::from_row(2.2, 0.4, -0.5, 1.7, 6.3, 1.9);
+    for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+        // A pixel that is covered whole, or not at all, shows what holds at its centre.
+        let sure = |draw: &dyn Fn(&mut Canvas<'_>, Paint), hit: &dyn Fn(&Canvas<'_>, Point) -> bool| {
+            let mut canvas = Canvas::new(48, 40).unwrap();
+            canvas.set_transform(transform);
+            draw(&mut canvas, Paint::new(Color::BLACK).with_antialias(Antialias::Supersample(16)));
+            let picture = canvas.read_pixels(IntRect::from_xywh(0, 0, 48, 40)).unwrap();
+            let mut counts = [0, 0];
+            for y in 0..40_u8 {
+                for x in 0..48_u8 {
+                    let alpha = picture.pixel(x.into(), y.into()).unwrap()[3];
+                    let center = Point::new(f32::from(x) + 0.5, f32::from(y) + 0.5);
+                    if alpha == 0 || alpha == 255 {
+                        assert_eq!(hit(&canvas, center), alpha == 255, "{center:?} {rule:?}");
+                        counts[usize::from(alpha == 255)] += 1;
+                    }
+                }
+            }
+            assert!(counts[0] > 100 && counts[1] > 50, "{counts:?}");
+        };
+        sure(&|canvas, paint| canvas.fill_path(&path, rule, paint), &|canvas, p| {
+            canvas.is_point_in_path(&path, rule, p)
+        });
+        sure(&|canvas, paint| canvas.stroke_path(&path, &stroke, paint), &|canvas, p| {
+            canvas.is_point_in_stroke(&path, &stroke, p)
+        });
+    }
+    let mut canvas = Canvas::new(48, 40).unwrap();
+    let mut path = Path::new();
+    path.circle((9.0, 8.0), 4.0);
+    canvas.clip_rect(rect(0.0, 0.0, 0.0, 0.0), Antialias::None);
+    assert!(canvas.is_point_in_path(&path, FillRule::NonZero, (9.0, 8.0)), "the clip does not matter");
+    canvas.scale(0.0, 1.0);
+    assert!(!canvas.is_point_in_path(&path, FillRule::NonZero, (0.0, 8.0)));
+    assert!(!canvas.is_point_in_stroke(&path, &stroke, (0.0, 8.0)));
+}
+
+// Targets
+
+#[test]
+fn a_borrowed_buffer_is_complete_after_a_flush_and_after_the_canvas() {
+    // Rows of three pixels and a byte that is none of the canvas's.
+    let mut buffer = vec![7; 13 * 2 - 1];
+    {
+        let mut canvas = Canvas::on(PixmapMut::from_bytes_with_stride(&mut buffer, 3, 2, 13).unwrap());
+        assert_eq!((canvas.width(), canvas.height()), (3, 2));
+        canvas.clear(Color::WHITE);
+        canvas.flush().unwrap();
+        assert_eq!(text(&canvas.read_pixels(IntRect::from_xywh(0, 0, 3, 2)).unwrap()), ["WWW", "WWW"]);
+        canvas.fill_rect(rect(2.0, 0.0, 3.0, 1.0), Color::RED);
+        canvas.push_layer(1.0, BlendMode::SourceOver);
+        canvas.fill_rect(rect(0.0, 1.0, 1.0, 2.0), Color::BLUE);
+    }
+    let white = [255; 4];
+    let expected =
+        [&[white, white, [255, 0, 0, 255]].concat()[..], &[7], &[[0, 0, 255, 255], white, white].concat()].concat();
+    assert_eq!(buffer, expected);
+
+    let mut pixmap = Pixmap::new(2, 1).unwrap();
+    let mut canvas = Canvas::on(pixmap.as_mut());
+    canvas.fill_rect(unit(), Color::GREEN);
+    let copy = canvas.into_pixmap();
+    assert_eq!(text(&copy), ["G."]);
+    assert_eq!(copy, pixmap);
+    // A picture that is there is drawn over.
+    let mut canvas = Canvas::from_pixmap(pixmap);
+    canvas.fill_rect(rect(1.0, 0.0, 2.0, 1.0), Color::RED);
+    assert_eq!(text(&canvas.into_pixmap()), ["GR"]);
+}
+
+// Pictures
+
+#[test]
+fn sizes_and_lengths_are_checked() {
+    assert!(matches!(Pixmap::new(0, 3), Err(Error::Parameter(_))));
+    assert!(matches!(Pixmap::from_vec(2, 2, vec![0; 15]), Err(Error::Parameter(_))));
+    assert!(matches!(Pixmap::from_straight(2, 2, vec![0; 17]), Err(Error::Parameter(_))));
+    assert!(matches!(PixmapRef::from_bytes(&[0; 15], 2, 2), Err(Error::Parameter(_))));
+    assert!(matches!(PixmapMut::from_bytes(&mut [0; 17], 2, 2), Err(Error::Parameter(_))));
+    assert!(matches!(Mask::from_vec(2, 2, vec![0; 3]), Err(Error::Parameter(_))));
+    let small = Limits { max_side: 100, max_pixels: 2_000 };
+    assert!(Canvas::with_limits(100, 20, small).is_ok());
+    for (width, height) in [(101, 1), (1, 101), (100, 21)] {
+        assert!(matches!(Canvas::with_limits(width, height, small), Err(Error::Limit(_))), "{width} × {height}");
+    }
+    let text = Canvas::with_limits(101, 1, small).err().unwrap().to_string();
+    assert!(text.contains("101 × 1") && text.contains("100"), "{text}");
+}
+
+#[test]
+fn straight_alpha_is_multiplied_in_and_divided_out_to_the_nearest() {
+    let straight = vec![255, 128, 1, 255, 255, 128, 1, 128, 200, 100, 3, 51, 9, 9, 9, 0];
+    let pixmap = Pixmap::from_straight(4, 1, straight).unwrap();
+    // c · a / 255: 128 · 128 / 255 = 64.3, 200 · 51 / 255 = 40.
+    assert_eq!(pixmap.data(), [255, 128, 1, 255, 128, 64, 1, 128, 40, 20, 1, 51, 0, 0, 0, 0]);
+    // c · 255 / a: 64 · 255 / 128 = 127.5, 1 · 255 / 128 = 2.0
+    assert_eq!(pixmap.to_straight(), [255, 128, 1, 255, 255, 128, 2, 128, 200, 100, 5, 51, 0, 0, 0, 0]);
+    // Every premultiplied pixel goes to straight and back unchanged.
+    let all: Vec<u8> = (0..=255_u8).flat_map(|a| (0..=a).flat_map(move |v| [v, 0, a, a])).collect();
+    let pixmap = Pixmap::from_vec(257 * 128, 1, all.clone());
+    assert!(pixmap.is_err(), "wider than a picture may be");
+    let pixmap = Pixmap::from_vec(257, 128, all).unwrap();
+    assert!(Pixmap::from_straight(257, 128, pixmap.to_straight()).unwrap() == pixmap);
+}
+
+#[cfg(feature = "codec")]
+mod codec {
+    use super::*;
+
+    fn noise(width: u32, height: u32) -> Pixmap {
+        let mut random = Random::new(9);
+        let straight = (0..width * height * 4).map(|_| random.bits() as u8).collect();
+        Pixmap::from_straight(width, height, straight).unwrap()
+    }
+
+    #[test]
+    fn a_png_file_holds_every_pixel() {
+        for (width, height) in [(1, 1), (17, 5), (3, 200), (256, 33)] {
+            let pixmap = noise(width, height);
+            let bytes = pixmap.encode_png().unwrap();
+            assert!(Pixmap::decode_png(&bytes).unwrap() == pixmap, "{width} × {height}");
+            assert!(Pixmap::decode(&bytes).unwrap() == pixmap);
+            assert_eq!(pixmap.encode_png().unwrap(), bytes, "the same picture is the same file");
+        }
+    }
+
+    #[test]
+    fn broken_png_files_are_refused() {
+        let bytes = noise(20, 20).encode_png().unwrap();
+        for length in [0, 7, 8, 20, 33, bytes.len() / 2, bytes.len() - 13] {
+            assert!(matches!(Pixmap::decode_png(&bytes[..length]), Err(Error::Format(_))), "{length}");
+        }
+        let mut random = Random::new(4);
+        for _ in 0..300 {
+            let mut broken = bytes.clone();
+            for _ in 0..3 {
+                let at = random.within(0..broken.len() as i64) as usize;
+                broken[at] = random.bits() as u8;
+            }
+            // Right or wrong, but no panic.
+            let _ = Pixmap::decode_png(&broken);
+        }
+    }
+
+    #[test]
+    fn a_save_that_fails_leaves_the_old_file() {
+        let folder = std::env::temp_dir().join(format!("rastrum-canvas-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("picture.png");
+        let (old, new) = (noise(3, 3), noise(4, 4));
+        old.save_png(&path).unwrap();
+        // A file that must not be written.
+        let mut permissions = std::fs::metadata(&path).unwrap().permissions();
+        permissions.set_readonly(true);
+        std::fs::set_permissions(&path, permissions.clone()).unwrap();
+        assert!(matches!(new.save_png(&path), Err(Error::Io { .. })));
+        assert!(Pixmap::load_png(&path).unwrap() == old);
+        #[expect(clippy::permissions_set_readonly_false, reason = "the file is this test's own")]
+        permissions.set_readonly(false);
+        std::fs::set_permissions(&path, permissions).unwrap();
+        // Nowhere to write to.
+        assert!(matches!(new.save_png(folder.join("none").join("picture.png")), Err(Error::Io { .. })));
+        assert!(matches!(new.save_png(&folder), Err(Error::Io { .. })));
+        assert!(Pixmap::load_png(&path).unwrap() == old);
+        let names: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(names, ["picture.png"], "nothing is left beside it");
+        new.save_png(&path).unwrap();
+        assert!(Pixmap::load_png(&path).unwrap() == new);
+        assert!(matches!(Pixmap::load_png(folder.join("none.png")), Err(Error::Io { .. })));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
