@@ -9,6 +9,10 @@ mod accuracy;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;
+#[cfg(all(feature = "svg", feature = "codec"))]
+mod fixtures;
+#[cfg(all(feature = "svg", feature = "codec"))]
+mod golden;
 mod seeds_lines;
 mod seeds_polygons;
 #[cfg(all(feature = "svg", feature = "codec"))]
