@@ -76,3 +76,26 @@ fn every_level_thread_count_and_band_height_gives_the_same_bytes() {
         }
     }
 }
+
+/// Fixtures ask one question each, so the one that fails says which step is to blame.
+#[cfg(all(feature = "svg", feature = "codec"))]
+#[test]
+fn every_fixture_gives_the_same_bytes() {
+    use super::fixtures;
+
+    for name in fixtures::all() {
+        let tree = fixtures::parse(&name);
+        let settings = RenderSettings::default();
+        let expected = fixtures::render(&name, &tree, settings.with_level(SimdLevel::Scalar).with_threads(1));
+        assert!(expected.data().iter().any(|byte| *byte != 0), "fixtures/{name}.svg draws nothing");
+        for level in SimdLevel::available() {
+            for threads in [1, 2, 3, 8] {
+                for band_height in [8, 64] {
+                    let settings = settings.with_level(level).with_threads(threads).with_band_height(band_height);
+                    let actual = fixtures::render(&name, &tree, settings);
+                    assert!(actual == expected, "fixtures/{name}.svg differs with {settings:?}");
+                }
+            }
+        }
+    }
+}

@@ -12,6 +12,10 @@ mod canvas;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;
+#[cfg(all(feature = "svg", feature = "codec"))]
+mod fixtures;
+#[cfg(all(feature = "svg", feature = "codec"))]
+mod golden;
 mod seeds_lines;
 mod seeds_polygons;
 #[cfg(all(feature = "svg", feature = "codec"))]
