@@ -67,6 +67,10 @@ pub(crate) fn add_samples(
                 _ => {}
             }
         }
+        // Edges right of the last column are not listed where nothing is drawn beyond it.
+        if inside(around, rule) {
+            add_span(cells, pixel_row, start, i32::MAX, n);
+        }
     }
 }
 
