@@ -9,6 +9,7 @@ mod accuracy;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;
+mod reference;
 mod seeds_lines;
 mod seeds_polygons;
 #[cfg(all(feature = "svg", feature = "codec"))]
