@@ -31,7 +31,8 @@ use separable::{composite_components, composite_planes};
 /// component; the others are the separable and non-separable modes of the W3C
 /// [Compositing and Blending Level 1](https://www.w3.org/TR/compositing-1/), whose sections 9 and 10
 /// define all but `Modulate`. Where a shape covers a pixel in part, the result is mixed with the
-/// destination by that coverage; pixels that the shape does not touch stay as they are, in every mode.
+/// destination by that coverage (`Plus` adds the source scaled by it, and saturates last); pixels that the
+/// shape does not touch stay as they are, in every mode.
 ///
 /// In the formulas s and d are premultiplied components of source and destination, sa and da their
 /// alphas, Cs = s / sa and Cb = d / da the straight colours, all in 0 ..= 1. Up to `Modulate` a formula

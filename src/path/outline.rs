@@ -173,6 +173,13 @@ fn right_of(v: Point) -> Point {
     Point::new(-v.y, v.x)
 }
 
+/// The part of its radius that is added to an arc's inner points, so that chords over angles of the given cosine
+/// lie as much outside the arc as inside: angle² / 12, where angle² / 2 is near 1 − cos.
+#[inline(always)]
+fn balance(cos: f32) -> f32 {
+    (1.0 - cos) * (1.0 / 6.0)
+}
+
 /// The greatest absolute coordinate.
 #[inline(always)]
 fn farthest_of(points: [Point; 4]) -> f32 {
@@ -325,7 +332,12 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
                 self.fold(p, next_p, chord, length, to - from);
             }
             if !last {
-                self.offset(next_p, next_direction);
+                // Chords lie to the inside of a curve, on average by step² / 12 · |C″|, and those of the pen's turn
+                // by angle² / 12 of its radius: moved outwards by as much, the contours enclose what they should.
+                let balanced = next_p - curve.acceleration(next_t) * (even * even * (1.0 / 12.0));
+                let right = right_of(next_direction) * (radius + radius * balance(direction.dot(next_direction)));
+                self.left(balanced - right);
+                self.right(balanced + right);
             }
             arrived = last;
             self.last = (next_direction, length);
@@ -460,9 +472,10 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
     /// The points between the left and the right end of a half circle around `p` that bulges along `d`.
     fn half_circle(&mut self, p: Point, d: Point) {
         let mut v = -right_of(d);
+        let reach = self.pen.radius + self.pen.radius * balance(self.pen.arc.cos);
         for _ in 1..self.pen.arc.half_turn {
             v = self.pen.arc.turn(v, true);
-            self.left(p + v * self.pen.radius);
+            self.left(p + v * reach);
         }
     }
 
@@ -573,7 +586,8 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
     /// direction `d0` to `d`.
     fn arc(&mut self, right: bool, d0: Point, d: Point, clockwise: bool) {
         let (arc, at) = (self.pen.arc, self.at);
-        let reach = if clockwise { -self.pen.radius } else { self.pen.radius };
+        let reach = self.pen.radius + self.pen.radius * balance(arc.cos);
+        let reach = if clockwise { -reach } else { reach };
         // A rest of up to 1.05 steps is the last one: no crumb from rounding.
         let near = arc.cos - 0.1 * (1.0 - arc.cos);
         let mut v = d0;

@@ -393,9 +393,13 @@ mod tests {
             let disc = draw(LineCap::Round);
             assert_eq!(disc.len(), 1);
             assert!(disc[0].len() >= 12);
+            // Within the tolerance of the circle on both sides, so that the area is the disc's.
             for p in &disc[0] {
-                assert!(((*p - Point::new(5.0, 5.0)).length() - 1.0).abs() < 1e-5);
+                assert!(((*p - Point::new(5.0, 5.0)).length() - 1.0).abs() < 0.01);
             }
+            let next = disc[0].iter().cycle().skip(1);
+            let area: f32 = disc[0].iter().zip(next).map(|(a, b)| a.cross(*b) * 0.5).sum();
+            assert!((area.abs() - std::f32::consts::PI).abs() < 0.01, "{area}");
         }
         for cap in [LineCap::Butt, LineCap::Square, LineCap::Round] {
             assert!(outline(&alone, &Stroke::new(2.0).with_cap(cap), Transform::IDENTITY, 0.01).is_empty());

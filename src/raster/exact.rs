@@ -216,6 +216,7 @@ fn enter(parts: &[Part], top: i32, bottom: i32, active: &mut Vec<Crossing>) {
 
 /// Changes of order by less than 1/32 pixel do not move coverage visibly.
 const NEAR: i32 = 8;
+const SWAPS_PER_EDGE: usize = 16;
 
 /// Where the first two neighbours change their order, or `bottom`. Never less than `thinnest` below `top`.
 ///
@@ -224,15 +225,19 @@ const NEAR: i32 = 8;
 fn first_crossing(active: &mut [Crossing], top: i32, bottom: i32, thinnest: i32) -> i32 {
     let mut cut = bottom;
     let mut index = 0;
-    // Each swap mends the order at the bottom, so that there are no more swaps than crossings.
+    // Each swap mends the order at the bottom: there are no more swaps than crossings. Where there are very many, what
+    // is left of them shows no more.
+    let mut swaps_left = SWAPS_PER_EDGE * active.len();
     while let Some([a, b]) = active.get_mut(index..).and_then(|rest| rest.first_chunk_mut()) {
         let (apart, past) = (i64::from(b.top_x - a.top_x), i64::from(a.bottom_x - b.bottom_x));
         if past > i64::from(NEAR) {
-            if apart <= i64::from(NEAR) {
+            if apart <= i64::from(NEAR) && swaps_left > 0 {
+                swaps_left -= 1;
                 std::mem::swap(a, b);
                 index = index.saturating_sub(1);
                 continue;
             }
+            let apart = apart.max(0);
             cut = cut.min(top + (i64::from(bottom - top) * apart / (apart + past)) as i32);
         }
         index += 1;

@@ -167,3 +167,19 @@ fn exact_coverage_of_crowded_rows() {
         assert!(errors.mean() < 1.0 && errors.largest < 32.0, "{corners} corners");
     }
 }
+
+#[test]
+fn shapes_that_leave_the_canvas_are_sampled_up_to_its_border() {
+    for width in [5, 16, 17, 64] {
+        for antialias in [Antialias::None, Antialias::Supersample(4), Antialias::Analytic] {
+            let mut canvas = Canvas::new(width, 4).unwrap();
+            let points = [(2.0, -3.0), (900.0, -3.0), (900.0, 9.0), (2.0, 9.0)].map(Point::from);
+            canvas.fill_polygon(&points, FillRule::NonZero, Paint::new(Color::RED).with_antialias(antialias));
+            let pixmap = canvas.into_pixmap();
+            for (index, pixel) in pixmap.data().as_chunks::<4>().0.iter().enumerate() {
+                let expected = if index % width as usize >= 2 { [255, 0, 0, 255] } else { [0; 4] };
+                assert_eq!(*pixel, expected, "pixel {index} of {width} a row, {antialias:?}");
+            }
+        }
+    }
+}

@@ -169,7 +169,9 @@ fn filling_a_clip_is_filling_its_path() {
                 inner(canvas);
                 canvas.fill(&paint);
             });
-            assert!(cut == both && cut != filled, "{antialias:?} {rule:?}");
+            // Where an edge is cut at the clip's side, the cut is rounded to 1/256 pixel.
+            let near = cut.data().iter().zip(both.data()).all(|(a, b)| a.abs_diff(*b) <= 1);
+            assert!(near && cut != filled, "{antialias:?} {rule:?}");
         }
     }
 }

@@ -16,6 +16,7 @@ mod determinism;
 mod fixtures;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod golden;
+mod reference;
 mod seeds_lines;
 mod seeds_polygons;
 #[cfg(all(feature = "svg", feature = "codec"))]
