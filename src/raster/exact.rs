@@ -14,7 +14,8 @@ use crate::style::FillRule;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 /// At most so many edge pieces are sorted per row: with many edges in a row, the slabs get coarser
-/// (never fewer than [`FEWEST_SLABS`]), so that a row's cost stays linear in its edges.
+/// (never fewer than [`FEWEST_SLABS`]), so that a row's cost stays linear in its edges. With more edges than that their
+/// crossings are not looked for.
 const PIECES_PER_ROW: usize = 8192;
 const FEWEST_SLABS: usize = 4;
 
@@ -183,6 +184,7 @@ fn resolve_row(
     ends.dedup();
     let thinnest =
         (fixed::ONE as usize * parts.len() / PIECES_PER_ROW).clamp(1, fixed::ONE as usize / FEWEST_SLABS) as i32;
+    let crowded = parts.len() > PIECES_PER_ROW;
     let mut rest = &ends[..];
     while let [top, after @ ..] = rest {
         let Some(bottom) = after.iter().find(|y| **y - top >= thinnest).or(after.last()).copied() else { break };
@@ -190,7 +192,7 @@ fn resolve_row(
         let mut top = *top;
         while top < bottom {
             enter(parts, top, bottom, active);
-            let cut = first_crossing(active, top, bottom, thinnest);
+            let cut = if crowded { bottom } else { first_crossing(active, top, bottom, thinnest) };
             if cut < bottom {
                 enter(parts, top, cut, active);
             }

@@ -375,8 +375,9 @@ fn degenerate_curves() {
         draws_like(
             "round caps at a point",
             16,
-            |c, p| c.stroke_path(path, &Stroke::new(8.0).with_cap(LineCap::Round), p),
-            |c, p| c.fill_circle(at, 4.0, p),
+            // A radius at which no pixel's centre lies on the circle.
+            |c, p| c.stroke_path(path, &Stroke::new(8.2).with_cap(LineCap::Round), p),
+            |c, p| c.fill_circle(at, 4.1, p),
         );
         draws_like(
             "square caps at a point",
@@ -506,7 +507,14 @@ fn dashes() {
     draws_like("offset of periods", 0, dashed(&[4.0, 6.0], -1e7, LineCap::Butt), &expected);
     draws_like("zeros between", 0, dashed(&[2.0, 0.0, 2.0, 6.0], 0.0, LineCap::Butt), &expected);
     draws_nothing("dashes without length", dashed(&[0.0, 5.0], 0.0, LineCap::Butt));
-    draws_like("dots", 16, dashed(&[0.0, 100.0], -30.0, LineCap::Round), |c, p| c.fill_circle((32.0, 24.5), 2.5, p));
+    // A radius at which no pixel's centre lies on the circle.
+    let dots = Stroke::new(5.2).with_cap(LineCap::Round).with_dash([0.0, 100.0], -30.0);
+    draws_like(
+        "dots",
+        16,
+        |c, p| c.draw_line((2.0, 24.5), (62.0, 24.5), &dots, p),
+        |c, p| c.fill_circle((32.0, 24.5), 2.6, p),
+    );
 
     // Nearly a million dashes cover half of their line.
     let pixels = drawn(Antialias::Analytic, dashed(&[1e-4, 1e-4], 0.0, LineCap::Butt));
