@@ -13,5 +13,6 @@ mod cli;
 mod determinism;
 mod seeds_lines;
 mod seeds_polygons;
+mod seeds_sampling;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod svg;

@@ -1,0 +1,60 @@
+//! Curved surfaces: bicubic Bézier patches and the triangles that stand for them.
+
+/// A point in space.
+pub(crate) type Point3 = [f64; 3];
+
+/// Sixteen control points: four rows along v, four points along u in each.
+pub(crate) type Patch = [[Point3; 4]; 4];
+
+/// What `a` and `b` make of each coordinate of two points.
+fn with(a: Point3, b: Point3, f: impl Fn(f64, f64) -> f64) -> Point3 {
+    [0, 1, 2].map(|i| f(a[i], b[i]))
+}
+
+pub(crate) fn length(v: Point3) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// The point of a cubic at `t`, by de Casteljau's steps.
+fn along([a, b, c, d]: [Point3; 4], t: f64) -> Point3 {
+    let mix = |a, b| with(a, b, |a, b| a * (1.0 - t) + b * t);
+    let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
+    mix(mix(ab, bc), mix(bc, cd))
+}
+
+/// The patch's point at (u, v).
+pub(crate) fn at(patch: &Patch, u: f64, v: f64) -> Point3 {
+    along(patch.map(|row| along(row, u)), v)
+}
+
+/// How many pieces each side needs for triangles no farther than `tolerance` from the surface: an eighth of
+/// the largest second derivatives bounds the distance of a triangle whose sides are 1 in u and v (Filip,
+/// Magedson and Markot, *Surface algorithms using bounds on derivatives*, 1986).
+pub(crate) fn pieces(patch: &Patch, tolerance: f64) -> usize {
+    let bend = |a, b, c| length(with(with(a, b, |a, b| a - 2.0 * b), c, |ab, c| ab + c)) * 6.0;
+    let (mut uu, mut uv, mut vv) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for i in 0..4 {
+        for j in 0..2 {
+            uu = uu.max(bend(patch[i][j], patch[i][j + 1], patch[i][j + 2]));
+            vv = vv.max(bend(patch[j][i], patch[j + 1][i], patch[j + 2][i]));
+        }
+    }
+    for i in 0..3 {
+        for j in 0..3 {
+            let across = with(patch[i + 1][j + 1], patch[i + 1][j], |a, b| a - b);
+            let back = with(patch[i][j + 1], patch[i][j], |a, b| a - b);
+            uv = uv.max(length(with(across, back, |a, b| a - b)) * 9.0);
+        }
+    }
+    ((uu + 2.0 * uv + vv) / (8.0 * tolerance)).sqrt().ceil().max(1.0) as usize
+}
+
+/// The corners of the triangles in u and v: squares of side 1/n, each cut along its diagonal.
+pub(crate) fn triangles(n: usize) -> impl Iterator<Item = [(f64, f64); 3]> {
+    let at = move |i: usize| i as f64 / n as f64;
+    (0..n).flat_map(move |j| (0..n).map(move |i| (i, j))).flat_map(move |(i, j)| {
+        let (a, b) = ((at(i), at(j)), (at(i + 1), at(j)));
+        let (c, d) = ((at(i + 1), at(j + 1)), (at(i), at(j + 1)));
+        [[a, b, c], [a, c, d]]
+    })
+}
