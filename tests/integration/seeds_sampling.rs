@@ -1,5 +1,7 @@
 //! The seed checklist's sampling and filtering: rows 14, 113, 115 and 121 to 125.
 
+#![expect(clippy::disallowed_methods, reason = "compared with a tolerance, so that no machine's last bit matters")]
+
 use rastrum::{Antialias, Canvas, Color, FillRule, Paint, Path, Pixmap, Point, Segment, Shadow, Stroke, Transform};
 
 use crate::oracle::area::{Place, area, coverage};

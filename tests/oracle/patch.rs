@@ -32,18 +32,15 @@ pub(crate) fn at(patch: &Patch, u: f64, v: f64) -> Point3 {
 /// Magedson and Markot, *Surface algorithms using bounds on derivatives*, 1986).
 pub(crate) fn pieces(patch: &Patch, tolerance: f64) -> usize {
     let bend = |a, b, c| length(with(with(a, b, |a, b| a - 2.0 * b), c, |ab, c| ab + c)) * 6.0;
-    let (mut uu, mut uv, mut vv) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for i in 0..4 {
-        for j in 0..2 {
-            uu = uu.max(bend(patch[i][j], patch[i][j + 1], patch[i][j + 2]));
-            vv = vv.max(bend(patch[j][i], patch[j + 1][i], patch[j + 2][i]));
-        }
-    }
-    for i in 0..3 {
-        for j in 0..3 {
-            let across = with(patch[i + 1][j + 1], patch[i + 1][j], |a, b| a - b);
-            let back = with(patch[i][j + 1], patch[i][j], |a, b| a - b);
-            uv = uv.max(length(with(across, back, |a, b| a - b)) * 9.0);
+    let most = |lines: &Patch| {
+        lines.iter().flat_map(|line| line.windows(3)).map(|w| bend(w[0], w[1], w[2])).fold(0.0, f64::max)
+    };
+    let (uu, vv) = (most(patch), most(&[0, 1, 2, 3].map(|i| patch.map(|row| row[i]))));
+    let mut uv = 0.0_f64;
+    for rows in patch.windows(2) {
+        for (here, there) in rows[0].windows(2).zip(rows[1].windows(2)) {
+            let (step, other) = (with(here[1], here[0], |a, b| a - b), with(there[1], there[0], |a, b| a - b));
+            uv = uv.max(length(with(other, step, |a, b| a - b)) * 9.0);
         }
     }
     ((uu + 2.0 * uv + vv) / (8.0 * tolerance)).sqrt().ceil().max(1.0) as usize

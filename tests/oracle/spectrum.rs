@@ -1,5 +1,7 @@
 //! Convolutions and spectra, straight from their definitions.
 
+#![expect(clippy::disallowed_methods, reason = "compared with a tolerance, so that no machine's last bit matters")]
+
 use std::f64::consts::TAU;
 
 /// A complex number.
