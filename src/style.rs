@@ -28,3 +28,18 @@ pub enum Antialias {
     /// the right of or below the edge. Strokes of width 0 are Bresenham lines.
     None,
 }
+
+impl Antialias {
+    /// Where in a pixel the samples lie, from its top left corner, a row after another: of
+    /// [`Supersample`](Self::Supersample) the centres of n × n equal squares, of [`None`](Self::None) the pixel's
+    /// centre. The other modes compute areas and have none.
+    pub fn sample_positions(self) -> Vec<(f32, f32)> {
+        let n = match self {
+            Self::Analytic | Self::Exact => 0,
+            Self::Supersample(n) => n.clamp(1, 16),
+            Self::None => 1,
+        };
+        let at = |i: u8| (f32::from(i) + 0.5) / f32::from(n);
+        (0..n).flat_map(|row| (0..n).map(move |column| (at(column), at(row)))).collect()
+    }
+}

@@ -1,10 +1,11 @@
-//! Whether a point is in a path's fill or stroke, and the stroke as a path of its own.
+//! Whether a point is in a path's fill or stroke, and what is filled for either as a path of its own.
 
 use super::curve::Cubic;
-use super::flatten::PolygonSink;
+use super::flatten::{PolygonSink, flatten_fill};
 use super::stroke::{StrokeScratch, stroke};
 use super::{Path, Segment, Stroke};
 use crate::geom::{Point, Rect, Transform};
+use crate::num::level::{SimdLevel, dispatch};
 use crate::style::FillRule;
 
 impl Path {
@@ -84,6 +85,17 @@ impl Path {
             &mut StrokeScratch::default(),
             &mut outline,
         );
+        outline.0
+    }
+
+    /// What filling this path under `transform` fills: closed polygons in device pixels, whose lines lie within
+    /// 0.05 pixels of the curves. Subpaths of a single point are left out.
+    #[must_use]
+    pub fn flattened(&self, transform: Transform) -> Self {
+        let mut outline = Outline(Self::new());
+        dispatch!(SimdLevel::best(), simd => {
+            flatten_fill(simd, self.verbs(), self.points(), transform, &mut outline);
+        });
         outline.0
     }
 }

@@ -1,5 +1,7 @@
 //! The canvas: state, clips, layers, masks, shadows, images, pixels and where they go.
 
+#![expect(clippy::disallowed_methods, reason = "compared with a tolerance, so that no machine's last bit matters")]
+
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

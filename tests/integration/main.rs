@@ -19,5 +19,6 @@ mod golden;
 mod reference;
 mod seeds_lines;
 mod seeds_polygons;
+mod seeds_sampling;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod svg;

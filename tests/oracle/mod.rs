@@ -1,8 +1,11 @@
 //! Slow, obvious versions that the fast code is held against, and what the tests share to do so.
 
+pub(crate) mod area;
 pub(crate) mod circle;
 pub(crate) mod line;
+pub(crate) mod patch;
 pub(crate) mod polygon;
+pub(crate) mod spectrum;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
