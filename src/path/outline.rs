@@ -334,8 +334,13 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
             if !last {
                 // Chords lie to the inside of a curve, on average by step² / 12 · |C″|, and those of the pen's turn
                 // by angle² / 12 of its radius: moved outwards by as much, the contours enclose what they should.
-                let balanced = next_p - curve.acceleration(next_t) * (even * even * (1.0 / 12.0));
-                let right = right_of(next_direction) * (radius + radius * balance(direction.dot(next_direction)));
+                // What of C″ lies along the curve moves nothing outwards, but a point at a fold beyond it.
+                let normal = right_of(next_direction);
+                let outwards = normal.dot(curve.acceleration(next_t)) * (even * even * (1.0 / 12.0));
+                let balanced = next_p - normal * outwards;
+                // After a kink the pen has turned already.
+                let turned = if kink { 1.0 } else { direction.dot(next_direction) };
+                let right = normal * (radius + radius * balance(turned));
                 self.left(balanced - right);
                 self.right(balanced + right);
             }
