@@ -18,11 +18,7 @@ fn main() -> rastrum::Result<()> {
     canvas.restore();
 
     // A star, filled by the even-odd rule.
-    let corner = |index: usize| {
-        let angle = std::f32::consts::TAU * index as f32 * 2.0 / 5.0;
-        Point::new(240.0 + 65.0 * angle.sin(), 98.0 - 65.0 * angle.cos())
-    };
-    let star: Vec<Point> = (0..5).map(corner).collect();
+    let star = [(240.0, 33.0), (278.2, 150.6), (178.2, 77.9), (301.8, 77.9), (201.8, 150.6)].map(Point::from);
     canvas.fill_polygon(&star, FillRule::EvenOdd, Color::from_rgb8(40, 90, 160));
 
     // A dashed wave.

@@ -6,12 +6,7 @@ fn main() {
     let (width, height) = (48, 15);
     let whole = IntRect::from_xywh(0, 0, width, height);
     let mut grid = vec![vec!['.'; width as usize]; height as usize];
-    let star: Vec<Point> = (0..5)
-        .map(|index| {
-            let angle = std::f32::consts::TAU * index as f32 * 2.0 / 5.0;
-            Point::new(24.0 + 7.4 * angle.sin(), 8.0 - 7.4 * angle.cos())
-        })
-        .collect();
+    let star = [(24.0, 0.6), (28.35, 14.0), (16.95, 5.7), (31.05, 5.7), (19.65, 14.0)].map(Point::from);
     raster::polygon::fill(&star, FillRule::EvenOdd, whole, |y, row| {
         for x in row {
             grid[y as usize][x as usize] = '*';
