@@ -79,9 +79,10 @@ fn samples(corners: &[Point]) -> Vec<u32> {
             // The samples from one crossing to the next, pixel by pixel.
             let sample = |x: f64| (x * GRID as f64 - 0.5).ceil() as usize;
             let (from, to) = (sample(*from), sample(*to));
-            for pixel in from / GRID..to.div_ceil(GRID) {
-                let inside = to.min((pixel + 1) * GRID) - from.max(pixel * GRID).min(to);
-                pixels[pixel] += inside as u32;
+            let first = from / GRID;
+            for (pixel, covered) in pixels[first..to.div_ceil(GRID).max(first)].iter_mut().enumerate() {
+                let left = (first + pixel) * GRID;
+                *covered += (to.min(left + GRID) - from.max(left).min(to)) as u32;
             }
         }
     }

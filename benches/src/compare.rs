@@ -11,8 +11,9 @@ const BLOCK_LIMIT: f64 = 32.0;
 /// The share of such squares that is borne: supersamplers and signed areas part where many edges cross in each pixel.
 const SHARE_LIMIT: f64 = 0.01;
 
-/// The mean difference of all channels that is borne.
-const MEAN_LIMIT: f64 = 6.0;
+/// The mean difference of all channels that is borne: where edges lie closer than pixels it is large, and the squares' averages
+/// decide.
+const MEAN_LIMIT: f64 = 16.0;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {

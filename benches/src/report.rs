@@ -65,7 +65,8 @@ impl Workload {
 
     /// vello_cpu's time on one thread by an engine's.
     fn ratio(&self, row: &Row, time: impl Fn(&Times) -> f64) -> Option<f64> {
-        Some(time(&self.row(Kind::Vello)?.times) / time(&row.times))
+        let ratio = time(&self.row(Kind::Vello)?.times) / time(&row.times);
+        ratio.is_finite().then_some(ratio)
     }
 
     fn goal(&self, kind: Kind) -> Option<f64> {
@@ -80,7 +81,8 @@ impl Workload {
 
     /// The price of `Exact` antialiasing: its time by that of `Analytic`.
     fn price_of_exact(&self) -> Option<f64> {
-        Some(self.row(Kind::RastrumExact)?.times.median() / self.row(Kind::Rastrum(1))?.times.median())
+        let price = self.row(Kind::RastrumExact)?.times.median() / self.row(Kind::Rastrum(1))?.times.median();
+        price.is_finite().then_some(price)
     }
 }
 
@@ -150,16 +152,19 @@ impl Report {
             "mean d",
             "max d"
         );
-        let or_dash = |value: Option<f64>, digits: usize| value.map_or("-".to_owned(), |v| format!("{v:.digits$}"));
+        let or_dash = |value: Option<f64>, digits: usize| match value {
+            Some(value) if value.is_finite() => format!("{value:.digits$}"),
+            _ => "-".to_owned(),
+        };
         for row in &workload.rows {
             let _ = writeln!(
                 out,
-                "  {:14} {:>7} {:>10.3} {:>10.3} {:>6.1}% {:>8} {:>8} {:>5} {:>9} {:>7.3} {:>5}",
+                "  {:14} {:>7} {:>10} {:>10} {:>7} {:>8} {:>8} {:>5} {:>9} {:>7.3} {:>5}",
                 row.kind.name(),
                 row.kind.threads(),
-                row.times.median(),
-                row.times.minimum(),
-                row.times.spread() * 100.0,
+                or_dash(Some(row.times.median()), 3),
+                or_dash(Some(row.times.minimum()), 3),
+                or_dash(Some(row.times.spread()), 3),
                 or_dash(workload.ratio(row, Times::median), 2),
                 or_dash(workload.ratio(row, Times::minimum), 2),
                 or_dash(workload.goal(row.kind), 1),

@@ -1,6 +1,6 @@
 //! How cost grows: with shapes, vertices, pixels and layers.
 
-use crate::engines::Kind;
+use crate::engines::{Engine, Kind};
 use crate::measure::{Times, time};
 use crate::scene::Scene;
 use crate::workloads::growing;
@@ -10,6 +10,11 @@ const LONGEST: f64 = 5_000.0;
 
 /// Each size is drawn until so much time has passed, in milliseconds, and at least three times.
 const ENOUGH: f64 = 300.0;
+
+const SHAPES: [usize; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
+const VERTICES: [usize; 5] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000];
+const SIDES: [usize; 7] = [256, 512, 1_024, 2_048, 4_096, 8_192, 16_384];
+const LAYERS: [usize; 7] = [1, 2, 5, 10, 20, 50, 100];
 
 pub struct Series {
     pub name: &'static str,
@@ -21,7 +26,7 @@ pub struct Series {
 /// One engine's times.
 pub struct Growth {
     pub kind: Kind,
-    /// Size and median milliseconds.
+    /// Size and milliseconds: the least of several, since small pictures suffer most from what else runs.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -47,21 +52,25 @@ fn exponent(points: &[(f64, f64)]) -> f64 {
     above / below
 }
 
+struct Plan {
+    name: &'static str,
+    unit: &'static str,
+    sizes: &'static [usize],
+    scene: fn(usize) -> Scene,
+    /// What the fit is over.
+    count: fn(usize) -> usize,
+}
+
 /// All series, each engine at each size. `report` hears of each point as it is measured.
 pub fn measure(kinds: &[Kind], mut report: impl FnMut(&str, Kind, f64, f64)) -> Vec<Series> {
-    let powers: [usize; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
-    let vertices: [usize; 5] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000];
-    let sides: [usize; 7] = [256, 512, 1_024, 2_048, 4_096, 8_192, 16_384];
-    let layers: [usize; 7] = [1, 2, 5, 10, 20, 50, 100];
-    let same = |size: usize| size as f64;
-    let plans: [(&str, &str, &[usize], fn(usize) -> Scene, fn(usize) -> f64); 4] = [
-        ("shapes", "circles of radius 4", &powers, growing::shapes, same),
-        ("vertices", "vertices of one filled path", &vertices, growing::vertices, same),
-        ("canvas", "pixels of the canvas", &sides, growing::canvas, |side| (side * side) as f64),
-        ("overdraw", "layers over the canvas", &layers, growing::overdraw, same),
+    let plans = [
+        Plan { name: "shapes", unit: "circles of radius 4", sizes: &SHAPES, scene: growing::shapes, count: |n| n },
+        Plan { name: "vertices", unit: "of one filled path", sizes: &VERTICES, scene: growing::vertices, count: |n| n },
+        Plan { name: "canvas", unit: "pixels", sizes: &SIDES, scene: growing::canvas, count: |side| side * side },
+        Plan { name: "overdraw", unit: "layers", sizes: &LAYERS, scene: growing::overdraw, count: |n| n },
     ];
     let mut series = Vec::new();
-    for (name, unit, sizes, scene, size_of) in plans {
+    for Plan { name, unit, sizes, scene, count } in plans {
         let mut engines: Vec<Growth> = kinds.iter().map(|kind| Growth { kind: *kind, points: Vec::new() }).collect();
         for size in sizes {
             let scene = scene(*size);
@@ -70,9 +79,9 @@ pub fn measure(kinds: &[Kind], mut report: impl FnMut(&str, Kind, f64, f64)) -> 
                     continue;
                 }
                 let Some(mut engine) = growth.kind.prepare(&scene, None) else { continue };
-                let time = median_time(&mut *engine);
-                growth.points.push((size_of(*size), time));
-                report(name, growth.kind, size_of(*size), time);
+                let time = least_time(&mut *engine);
+                growth.points.push((count(*size) as f64, time));
+                report(name, growth.kind, count(*size) as f64, time);
             }
         }
         series.push(Series { name, unit, engines });
@@ -80,7 +89,7 @@ pub fn measure(kinds: &[Kind], mut report: impl FnMut(&str, Kind, f64, f64)) -> 
     series
 }
 
-fn median_time(engine: &mut dyn crate::engines::Engine) -> f64 {
+fn least_time(engine: &mut dyn Engine) -> f64 {
     // The first picture finds cold memory; it counts only where there is no time for another.
     let first = time(engine, 1);
     if first > LONGEST {
@@ -90,7 +99,7 @@ fn median_time(engine: &mut dyn crate::engines::Engine) -> f64 {
     while times.len() < 3 || (times.iter().sum::<f64>() < ENOUGH && times.len() < 200) {
         times.push(time(engine, 1));
     }
-    Times::new(times).median()
+    Times::new(times).minimum()
 }
 
 #[cfg(test)]

@@ -81,12 +81,12 @@ fn circles() -> Scene {
     scene
 }
 
-/// 10,000 opaque strokes of one line each, 4–200 px long in any direction, butt caps, width 1.5.
+/// 10,000 opaque strokes of one line each, 4–100 px long in any direction, butt caps, width 1.5.
 fn line_segments() -> Scene {
     let mut scene = Scene::new("W5", "10,000 line segments, width 1.5", 1024);
     let mut random = Random::new(5);
     for _ in 0..10_000 {
-        let (length, angle) = (random.within(4.0, 200.0), random.within(0.0, TAU));
+        let (length, angle) = (random.within(4.0, 100.0), random.within(0.0, TAU));
         let [dx, dy] = around([0.0, 0.0], [length, length], angle);
         let inside = |random: &mut Random, d: f32| random.within(0.0 - d.min(0.0), SIDE - d.max(0.0));
         let (x, y) = (inside(&mut random, dx), inside(&mut random, dy));
@@ -110,16 +110,16 @@ fn cubics() -> Scene {
     scene
 }
 
-/// One opaque polyline, width 1, mitred: a walk in steps of 1–8 px that turns by up to a third of a right angle at
-/// each vertex and is thrown back by the canvas's sides.
+/// One opaque polyline, width 1, mitred: a walk in steps of 1–12 px that turns by up to a right angle at each
+/// vertex and is thrown back by the canvas's sides.
 pub fn polyline(vertices: usize) -> Scene {
     let mut scene = Scene::new("W7", "one polyline, 200,000 vertices, width 1", 1024);
     let mut random = Random::new(7);
     let (mut x, mut y, mut angle) = (SIDE / 2.0, SIDE / 2.0, 0.0_f32);
     let mut path = vec![Segment::Move([x, y])];
     for _ in 1..vertices {
-        angle = (angle + random.within(-PI / 6.0, PI / 6.0)).rem_euclid(TAU);
-        let step = random.within(1.0, 8.0);
+        angle = (angle + random.within(-PI / 2.0, PI / 2.0)).rem_euclid(TAU);
+        let step = random.within(1.0, 12.0);
         let [dx, dy] = around([0.0, 0.0], [step, step], angle);
         if !(0.0..SIDE).contains(&(x + dx)) {
             angle = PI - angle;
