@@ -1,4 +1,4 @@
-//! tiny-skia: one pixmap; a clip is a mask, made in each picture once however often it is drawn in.
+//! tiny-skia: one pixmap; a clip is a mask, made in each picture anew, the last few kept while it is drawn.
 
 use tiny_skia::{
     Color, FillRule, FilterQuality, GradientStop, LineCap, LineJoin, LinearGradient, Mask, Paint, Path, PathBuilder,
@@ -13,10 +13,12 @@ pub struct Prepared<'s> {
     items: Vec<Item<'s>>,
     /// Each clip with those that it lies in, outermost first.
     clips: Vec<Vec<Clip>>,
-    /// The clips' masks, and whether this picture has made them.
-    masks: Vec<Option<Mask>>,
-    made: Vec<bool>,
+    /// The masks of the clips used last, the latest at the end; those of `None` are of earlier pictures.
+    masks: Vec<(Option<usize>, Mask)>,
 }
+
+/// Enough for drawings that go back and forth between clips; all masks of a drawing may take a gigabyte.
+const MASKS: usize = 8;
 
 struct Item<'s> {
     outline: Outline,
@@ -62,16 +64,20 @@ impl<'s> Prepared<'s> {
         let clips: Vec<Vec<Clip>> = chains.map(|chain| chain.into_iter().map(clip).collect()).collect();
         let mut target = Pixmap::new(scene.width, scene.height).expect("the scene has a valid size");
         target.fill(Color::WHITE);
-        Self { target, items, masks: vec![None; clips.len()], made: vec![false; clips.len()], clips }
+        Self { target, items, masks: Vec::new(), clips }
     }
 
+    /// Makes a clip's mask the last of `masks`.
     fn make_mask(&mut self, clip: usize) {
-        if std::mem::replace(&mut self.made[clip], true) {
+        if let Some(at) = self.masks.iter().position(|(made_for, _)| *made_for == Some(clip)) {
+            self.masks[at..].rotate_left(1);
             return;
         }
-        let size = (self.target.width(), self.target.height());
-        let mask =
-            self.masks[clip].get_or_insert_with(|| Mask::new(size.0, size.1).expect("the scene has a valid size"));
+        let mut mask = if self.masks.len() < MASKS {
+            Mask::new(self.target.width(), self.target.height()).expect("the scene has a valid size")
+        } else {
+            self.masks.remove(0).1
+        };
         mask.clear();
         for (index, clip) in self.clips[clip].iter().enumerate() {
             match &clip.path {
@@ -80,19 +86,22 @@ impl<'s> Prepared<'s> {
                 None => mask.clear(),
             }
         }
+        self.masks.push((Some(clip), mask));
     }
 }
 
 impl Engine for Prepared<'_> {
     fn draw(&mut self) {
         self.target.fill(Color::WHITE);
-        self.made.fill(false);
+        for (made_for, _) in &mut self.masks {
+            *made_for = None;
+        }
         for index in 0..self.items.len() {
             if let Some(clip) = self.items[index].clip {
                 self.make_mask(clip);
             }
             let Item { outline, paint, transform, clip } = &self.items[index];
-            let mask = clip.and_then(|clip| self.masks[clip].as_ref());
+            let mask = clip.and_then(|_| self.masks.last()).map(|(_, mask)| mask);
             match outline {
                 Outline::Rect(rect) => self.target.fill_rect(*rect, paint, *transform, mask),
                 Outline::Fill(path, rule) => self.target.fill_path(path, paint, *rule, *transform, mask),
