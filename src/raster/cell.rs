@@ -253,6 +253,25 @@ pub(crate) fn add_piece<S: Simd, const TOUCH: bool>(
     }
 }
 
+/// The columns of a strip whose coverage matters: edges left of them only wind around them, edges right of them do
+/// nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// x in 20.12 fixed point.
+    low: i32,
+    high: i32,
+}
+
+impl Reach {
+    pub(crate) const EVERYTHING: Self = Self { low: i32::MIN, high: i32::MAX };
+    pub(crate) const NOTHING: Self = Self { low: i32::MIN, high: i32::MIN };
+
+    /// The columns `first..end`.
+    pub(crate) fn columns(first: usize, end: usize) -> Self {
+        Self { low: (first as i32) << FINE_SHIFT, high: (end as i32) << FINE_SHIFT }
+    }
+}
+
 /// A strip's height in fixed point.
 const STRIP: i32 = (BLOCK_HEIGHT as i32) << fixed::SHIFT;
 
@@ -260,7 +279,8 @@ const STRIP: i32 = (BLOCK_HEIGHT as i32) << fixed::SHIFT;
 /// `strips` strips.
 ///
 /// Where an edge leaves a strip is a function of the edge and of that scanline, so that it does not
-/// matter in which band the strip is.
+/// matter in which band the strip is. `reaches` says of each strip which columns matter; all of those of strips that it
+/// does not have.
 #[inline(always)]
 pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
     simd: S,
@@ -268,6 +288,7 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
     edge: Edge,
     top: i32,
     strips: usize,
+    reaches: &[Reach],
 ) {
     let (x0, y0, x1, y1, winding) = edge.downward();
     let first = (y0 - top).div_euclid(STRIP);
@@ -284,6 +305,13 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
             if y1 > bottom {
                 end = (line.fine_x_at(bottom), bottom);
             }
+        }
+        let Reach { low, high } = reaches.get(index as usize).copied().unwrap_or(Reach::EVERYTHING);
+        if start.0 >= high && end.0 >= high {
+            continue;
+        }
+        if start.0 < low && end.0 < low {
+            (start.0, end.0) = (low, low);
         }
         if let Some(mut strip) = cells.strip(index as usize) {
             add_piece::<S, TOUCH>(simd, &mut strip, start, end, winding, strip_top);
@@ -368,7 +396,7 @@ mod tests {
         let mut cells = Accumulator::default();
         cells.resize(width, 1);
         for edge in edges {
-            dispatch!(level, simd => add_edge::<_, true>(simd, &mut cells, *edge, 0, 1));
+            dispatch!(level, simd => add_edge::<_, true>(simd, &mut cells, *edge, 0, 1, &[]));
         }
         let strip = cells.strip(0).unwrap();
         let mut sum = [0_i32; 8];

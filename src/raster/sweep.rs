@@ -20,6 +20,12 @@ pub(crate) enum CoverageRule {
 
 /// Takes a strip's coverage from left to right.
 pub(crate) trait BlockSink<S: Simd> {
+    /// Whether the coverage of block `index` matters: if not, it may be left out.
+    #[inline(always)]
+    fn wants(&self, index: usize) -> bool {
+        let _ = index;
+        true
+    }
     /// Coverage of the block `index` (16 columns each) of the strip.
     fn block(&mut self, simd: S, index: usize, mask: &MaskBlock);
     /// Blocks `start..end` are covered by the same value along each row.
@@ -94,8 +100,16 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
                 break;
             };
             if index >= blocks {
-                // The block into which the last column spills: nothing there is drawn.
+                // A block in which nothing is drawn, such as the one into which the last column spills.
                 *columns = [[0; BLOCK_HEIGHT]; BLOCK_WIDTH];
+                done = index + 1;
+                continue;
+            }
+            if !sink.wants(index) {
+                for column in columns.iter_mut() {
+                    cover += i32x8::load_array_ref(simd, column);
+                    *column = [0; BLOCK_HEIGHT];
+                }
                 done = index + 1;
                 continue;
             }
@@ -128,7 +142,12 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
 fn uniform<S: Simd, K: BlockSink<S>>(simd: S, coverage: i32x8<S>, start: usize, end: usize, sink: &mut K) {
     let lanes = coverage.to_array();
     if lanes != [0; BLOCK_HEIGHT] {
-        sink.run(simd, start, end, &lanes.map(|v| v as u8));
+        // Not `map`: outside of link-time optimisation it stays a call.
+        let mut rows = [0; BLOCK_HEIGHT];
+        for (row, lane) in rows.iter_mut().zip(lanes) {
+            *row = lane as u8;
+        }
+        sink.run(simd, start, end, &rows);
     }
 }
 

@@ -8,6 +8,7 @@
 use fearless_simd::Simd;
 
 use super::clip::{BandMask, ClipBlock, ClipSink};
+use super::occlusion::{ClaimSink, Occlusion, reach};
 use super::plan::Plan;
 use super::prepare::Chunk;
 use super::surface::Surface;
@@ -19,7 +20,7 @@ use crate::display_list::{ClipId, ClipKind, ClipNode, Command, DisplayList, Draw
 use crate::geom::IntRect;
 use crate::num::level::{SimdLevel, dispatch};
 use crate::paint::{PreparedPaint, fetch_block};
-use crate::raster::cell::{self, Accumulator};
+use crate::raster::cell::{self, Accumulator, Reach};
 use crate::raster::edge::Edge;
 use crate::raster::exact::{self, ExactScratch};
 use crate::raster::sample::{self, SampleScratch};
@@ -30,6 +31,8 @@ use crate::surface::{Mask, MaskKind};
 
 const ROW_BYTES: usize = BLOCK_WIDTH * 4;
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
+/// A shape with more edges in a band than so many for each block that its bounds could hold is not asked what it hides.
+const EDGES_PER_BLOCK: usize = 4;
 const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 
 /// Working memory of one thread.
@@ -41,6 +44,12 @@ pub(super) struct BandScratch {
     layers: Vec<LayerBuffer>,
     spare_layers: Vec<LayerBuffer>,
     clips: ClipCache,
+    occlusion: Occlusion,
+    /// Of the draw in hand, for each strip: the blocks in which it can be seen, and their columns.
+    visible: Vec<(usize, usize)>,
+    reaches: Vec<Reach>,
+    /// Chunk, item and place in the band of what may hide something.
+    candidates: Vec<(usize, usize, u32)>,
 }
 
 /// The pixels of an open layer in this band. They take memory from the first draw on: layers that only hold
@@ -111,6 +120,7 @@ pub(super) fn render(
     let frame = Frame { list, plan, chunks, index, top, rows, strips, blocks: width.div_ceil(BLOCK_WIDTH) };
     scratch.cells.resize(width, strips);
     scratch.clips.reset();
+    scratch.occlusion.reset(frame.blocks, strips);
     dispatch!(level, simd => render_with(simd, &frame, &mut target, scratch));
     // A recording ends with every layer closed; were one open, its memory is kept all the same.
     scratch.spare_layers.append(&mut scratch.layers);
@@ -118,9 +128,13 @@ pub(super) fn render(
 
 #[inline(always)]
 fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, scratch: &mut BandScratch) {
+    find_hidden(simd, frame, scratch);
+    let mut order = 0;
     for (chunk_index, chunk) in frame.chunks.iter().enumerate() {
         let Some(band) = chunk.band(frame.index) else { continue };
         for item in &band.items {
+            scratch.occlusion.release(order);
+            order += 1;
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };
             let edges = band.edges.get(item.start as usize..item.end as usize).unwrap_or(&[]);
             match command {
@@ -167,6 +181,103 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
     }
 }
 
+/// Lets the band's opaque shapes claim the blocks that they cover whole, front to back.
+#[inline(never)]
+fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch) {
+    let mut candidates = std::mem::take(&mut scratch.candidates);
+    candidates.clear();
+    let (mut order, mut depth) = (0_u32, 0_u32);
+    for (chunk_index, chunk) in frame.chunks.iter().enumerate() {
+        let Some(band) = chunk.band(frame.index) else { continue };
+        for (item_index, item) in band.items.iter().enumerate() {
+            match frame.list.commands.get(item.command as usize) {
+                Some(Command::BeginLayer(_) | Command::BeginMask(_)) => depth += 1,
+                Some(Command::EndLayer(_) | Command::EndMask(..)) => depth = depth.saturating_sub(1),
+                // What is drawn first hides nothing.
+                Some(Command::Draw(draw)) if depth == 0 && order > 0 => {
+                    if may_hide(frame, draw, (item.end - item.start) as usize) {
+                        candidates.push((chunk_index, item_index, order));
+                    }
+                }
+                _ => {}
+            }
+            order += 1;
+        }
+    }
+    for &(chunk, item, order) in candidates.iter().rev() {
+        let Some(band) = frame.chunks.get(chunk).and_then(|chunk| chunk.band(frame.index)) else { continue };
+        let Some(item) = band.items.get(item) else { continue };
+        let Some(Command::Draw(draw)) = frame.list.commands.get(item.command as usize) else { continue };
+        let edges = band.edges.get(item.start as usize..item.end as usize).unwrap_or(&[]);
+        claim_blocks(simd, frame, scratch, draw, edges, order);
+    }
+    scratch.candidates = candidates;
+}
+
+/// Whether a shape is worth a look: opaque, with room for whole blocks, and not mostly edges.
+fn may_hide(frame: &Frame<'_>, draw: &Draw, edges: usize) -> bool {
+    let opaque = matches!(draw.blend_mode, BlendMode::SourceOver | BlendMode::Source)
+        && draw.clip == ClipId::NONE
+        && draw.antialias == Antialias::Analytic
+        && matches!(draw.geometry, Geometry::Fill { .. } | Geometry::Bounds)
+        && frame.list.paints.get(draw.paint as usize).is_some_and(PreparedPaint::is_opaque);
+    let (top, bottom) = (draw.bounds.top.max(frame.top), draw.bounds.bottom.min(frame.top + frame.rows as i32));
+    let across =
+        draw.bounds.right / BLOCK_WIDTH as i32 - (draw.bounds.left + BLOCK_WIDTH as i32 - 1) / BLOCK_WIDTH as i32;
+    let blocks = across.max(0) as usize * ((bottom - top).max(0) as usize / BLOCK_HEIGHT);
+    opaque && edges <= EDGES_PER_BLOCK * blocks
+}
+
+/// Accumulates a shape where it can be seen and claims the blocks that it covers whole.
+#[inline(never)]
+fn claim_blocks<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    scratch: &mut BandScratch,
+    draw: &Draw,
+    edges: &[Edge],
+    order: u32,
+) {
+    if !find_visible(frame, scratch, draw.bounds) {
+        return;
+    }
+    let rule = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, edges);
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let BandScratch { cells, occlusion, visible, .. } = scratch;
+            for strip in 0..frame.strips {
+                if cells.is_occupied(strip)
+                    && let Some(mut cells) = cells.strip(strip)
+                {
+                    let rows = frame.rows.saturating_sub(strip * BLOCK_HEIGHT).min(BLOCK_HEIGHT);
+                    let end = visible.get(strip).map_or(frame.blocks, |(_, end)| *end);
+                    let mut sink = ClaimSink { occlusion, order, strip, rows };
+                    sweep(simd, &mut cells, end, rule, &mut sink);
+                }
+            }
+        },
+    );
+}
+
+/// Notes for each strip where a draw within `bounds` can be seen; false if nowhere. Without hidden blocks it notes
+/// nothing, which stands for everywhere.
+fn find_visible(frame: &Frame<'_>, scratch: &mut BandScratch, bounds: IntRect) -> bool {
+    scratch.visible.clear();
+    scratch.reaches.clear();
+    if !scratch.occlusion.is_some() {
+        return true;
+    }
+    let mut seen = false;
+    for strip in 0..frame.strips {
+        let visible = scratch.occlusion.visible(strip, bounds);
+        seen |= visible.0 < visible.1;
+        scratch.visible.push(visible);
+        scratch.reaches.push(reach(visible));
+    }
+    seen
+}
+
 /// Draws one shape onto the open layer, or onto the target.
 #[inline(never)]
 fn paint_draw<S: Simd>(
@@ -202,11 +313,20 @@ fn paint_draw_inner<S: Simd>(
     };
     // The clip's own edges go through the same cells, so it comes first.
     clip_for(simd, frame, scratch, draw.clip);
+    if !find_visible(frame, scratch, draw.bounds) {
+        return;
+    }
     let rule = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, edges);
-    let BandScratch { cells, layers, clips, .. } = scratch;
+    let BandScratch { cells, layers, clips, occlusion, visible, .. } = scratch;
     let surface = &mut open_surface(frame, target, layers);
     let clip = clips.current(draw.clip);
-    paint_cells(simd, frame, cells, rule, Look { source, blend_mode: draw.blend_mode, opacity: 255, clip }, surface);
+    // Opaque colours replace what is below either way; the usual mode has the shorter paths.
+    let blend_mode = match draw.blend_mode {
+        BlendMode::Source if paint.is_opaque() => BlendMode::SourceOver,
+        mode => mode,
+    };
+    let look = Look { source, blend_mode, opacity: 255, clip };
+    paint_cells(simd, frame, cells, rule, look, surface, (occlusion, visible));
 }
 
 /// The rows to draw on: those of the innermost open layer, or the target's.
@@ -246,13 +366,16 @@ fn paint_layer_inner<S: Simd>(
     edges: &[Edge],
 ) {
     clip_for(simd, frame, scratch, layer.clip);
+    if !find_visible(frame, scratch, layer.bounds) {
+        return;
+    }
     let rule = accumulate(simd, frame, scratch, &Geometry::Bounds, Antialias::Analytic, edges);
-    let BandScratch { cells, layers, clips, .. } = scratch;
+    let BandScratch { cells, layers, clips, occlusion, visible, .. } = scratch;
     let surface = &mut open_surface(frame, target, layers);
     let source = Source::Layer(pixels.surface(frame.rows));
     let clip = clips.current(layer.clip);
     let look = Look { source, blend_mode: layer.blend_mode, opacity: layer.opacity, clip };
-    paint_cells(simd, frame, cells, rule, look, surface);
+    paint_cells(simd, frame, cells, rule, look, surface, (occlusion, visible));
 }
 
 /// Multiplies a layer by what was drawn as its mask.
@@ -341,12 +464,12 @@ fn accumulate_inner<S: Simd>(
             let crowded = exact::crowded_strips(edges, top, frame.strips);
             if antialias == Antialias::Analytic && crowded == 0 {
                 for edge in edges {
-                    cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips);
+                    cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips, &scratch.reaches);
                 }
                 return rule.into();
             }
             for edge in edges {
-                cell::add_edge::<S, true>(simd, &mut scratch.cells, *edge, top, frame.strips);
+                cell::add_edge::<S, true>(simd, &mut scratch.cells, *edge, top, frame.strips, &[]);
             }
             for strip in 0..frame.strips {
                 let Some(mut cells) = scratch.cells.strip(strip) else { break };
@@ -426,6 +549,9 @@ fn build_clip_inner<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScrat
             scratch.clips.drop_last();
         }
     }
+    // Other draws may show what this one hides.
+    scratch.visible.clear();
+    scratch.reaches.clear();
     for (id, node) in missing.into_iter().rev() {
         let mut mask = scratch.clips.spare.pop().unwrap_or_default();
         mask.reset(frame.blocks, frame.strips);
@@ -541,10 +667,11 @@ fn paint_cells<S: Simd>(
     rule: CoverageRule,
     look: Look<'_>,
     surface: &mut Surface<'_>,
+    seen: (&Occlusion, &[(usize, usize)]),
 ) {
     simd.vectorize(
         #[inline(always)]
-        || paint_cells_inner(simd, frame, cells, rule, look, surface),
+        || paint_cells_inner(simd, frame, cells, rule, look, surface, seen),
     )
 }
 
@@ -556,7 +683,14 @@ fn paint_cells_inner<S: Simd>(
     rule: CoverageRule,
     mut look: Look<'_>,
     surface: &mut Surface<'_>,
+    (occlusion, visible): (&Occlusion, &[(usize, usize)]),
 ) {
+    let mut pattern = [0; ROW_BYTES];
+    if let Source::Solid(color) = look.source {
+        for pixel in pattern.as_chunks_mut::<4>().0 {
+            *pixel = color;
+        }
+    }
     for strip in 0..frame.strips {
         if !cells.is_occupied(strip) {
             continue;
@@ -564,8 +698,10 @@ fn paint_cells_inner<S: Simd>(
         let rows = surface.strip_rows(strip);
         let top = frame.top + (strip * BLOCK_HEIGHT) as i32;
         if let Some(mut cells) = cells.strip(strip) {
-            let mut painter = Painter { look: &mut look, surface, strip, rows, top };
-            sweep(simd, &mut cells, frame.blocks, rule, &mut painter);
+            let end = visible.get(strip).map_or(frame.blocks, |(_, end)| *end);
+            let occlusion = visible.get(strip).map(|_| occlusion);
+            let mut painter = Painter { look: &mut look, pattern, occlusion, surface, strip, rows, top };
+            sweep(simd, &mut cells, end, rule, &mut painter);
         }
     }
 }
@@ -573,6 +709,10 @@ fn paint_cells_inner<S: Simd>(
 /// Draws the coverage of one strip.
 struct Painter<'a, 'b, 'c> {
     look: &'a mut Look<'b>,
+    /// A block's row of the one colour, if there is one.
+    pattern: [u8; ROW_BYTES],
+    /// What is hidden, if anything is.
+    occlusion: Option<&'a Occlusion>,
     surface: &'a mut Surface<'c>,
     strip: usize,
     /// Rows of the strip that exist.
@@ -582,6 +722,11 @@ struct Painter<'a, 'b, 'c> {
 }
 
 impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
+    #[inline(always)]
+    fn wants(&self, index: usize) -> bool {
+        self.occlusion.is_none_or(|occlusion| !occlusion.is_hidden(self.strip, index))
+    }
+
     #[inline(always)]
     fn block(&mut self, simd: S, index: usize, mask: &MaskBlock) {
         if self.look.clip.is_none() && self.look.opacity == 255 {
@@ -595,7 +740,29 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
     }
 
     #[inline(always)]
-    fn run(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
+    fn run(&mut self, simd: S, mut start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
+        if self.occlusion.is_some() {
+            // Between hidden blocks.
+            while start < end {
+                if !BlockSink::<S>::wants(self, start) {
+                    start += 1;
+                    continue;
+                }
+                let from = start;
+                while start < end && BlockSink::<S>::wants(self, start) {
+                    start += 1;
+                }
+                self.visible_run(simd, from, start, rows);
+            }
+        } else {
+            self.visible_run(simd, start, end, rows);
+        }
+    }
+}
+
+impl Painter<'_, '_, '_> {
+    #[inline(always)]
+    fn visible_run<S: Simd>(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
         if self.look.clip.is_none()
             && self.look.blend_mode == BlendMode::SourceOver
             && let Source::Solid(color) = self.look.source
@@ -603,14 +770,15 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
             self.fill_run(simd, start, end, rows, color);
             return;
         }
-        let mask = rows.map(|value| [value; BLOCK_WIDTH]);
+        let mut mask = EMPTY_MASK;
+        for (out, value) in mask.iter_mut().zip(rows) {
+            *out = [*value; BLOCK_WIDTH];
+        }
         for index in start..end {
             self.block(simd, index, &mask);
         }
     }
-}
 
-impl Painter<'_, '_, '_> {
     /// Multiplies coverage by opacity and clip; false where nothing is left.
     #[inline(never)]
     fn cut<S: Simd>(&self, simd: S, index: usize, mask: &mut MaskBlock) -> bool {
@@ -663,11 +831,17 @@ impl Painter<'_, '_, '_> {
             }
             let row = self.strip * BLOCK_HEIGHT + row;
             let slice = self.surface.row(row, start, end);
+            let (blocks, tail) = slice.as_chunks_mut::<ROW_BYTES>();
             if coverage == 255 && color[3] == 255 {
-                slice.as_chunks_mut::<4>().0.fill(color);
+                // Whole blocks at a time: four bytes at a time would be stored one by one.
+                for pixels in blocks {
+                    *pixels = self.pattern;
+                }
+                for (byte, pattern) in tail.iter_mut().zip(self.pattern) {
+                    *byte = pattern;
+                }
                 continue;
             }
-            let (blocks, tail) = slice.as_chunks_mut::<ROW_BYTES>();
             let last = start + blocks.len();
             for pixels in blocks {
                 if coverage == 255 {
@@ -707,12 +881,15 @@ impl Painter<'_, '_, '_> {
                 if *mask == [0; BLOCK_WIDTH] {
                     continue;
                 }
+                let pattern = &self.pattern;
                 self.surface.with_row(
                     first_row + row,
                     index,
                     #[inline(always)]
                     |pixels| {
-                        if color[3] == 255 {
+                        if color[3] == 255 && *mask == [255; BLOCK_WIDTH] {
+                            *pixels = *pattern;
+                        } else if color[3] == 255 {
                             over_opaque_row(simd, pixels, color, mask);
                         } else {
                             over_solid_row(simd, pixels, color, mask);
@@ -725,11 +902,7 @@ impl Painter<'_, '_, '_> {
         let mut source = NO_PIXELS;
         let mut opaque = false;
         match &mut self.look.source {
-            Source::Solid(color) => {
-                for pixel in source.as_flattened_mut().as_chunks_mut::<4>().0 {
-                    *pixel = *color;
-                }
-            }
+            Source::Solid(_) => source = [self.pattern; BLOCK_HEIGHT],
             Source::Paint(paint) => {
                 opaque = paint.is_opaque();
                 fetch_block(simd, paint, (index * BLOCK_WIDTH) as i32, self.top, &mut source);

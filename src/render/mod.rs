@@ -6,6 +6,7 @@
 
 mod band;
 mod clip;
+mod occlusion;
 mod plan;
 mod pool;
 mod prepare;

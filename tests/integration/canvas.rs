@@ -450,7 +450,9 @@ fn a_sharp_shadow_is_the_shape_moved_and_coloured() {
                 canvas.write_pixels(moved.as_ref(), 0, 0).unwrap();
                 shape(canvas, Color::BLACK);
             });
-            assert!(found == expected, "{name} by {dx}, {dy}");
+            // Where an edge is cut at a side of the shadow's surface, the cut is rounded to 1/256 pixel.
+            let near = found.data().iter().zip(expected.data()).all(|(a, b)| a.abs_diff(*b) <= 1);
+            assert!(near, "{name} by {dx}, {dy}");
         }
     }
 }

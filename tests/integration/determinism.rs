@@ -1,7 +1,7 @@
 //! One recording gives one image, whatever renders it. Tolerance 0.
 
 use rastrum::{
-    Antialias, BlendMode, Canvas, Color, FillRule, GradientStop, LineJoin, LinearGradient, Paint, Path, Rect,
+    Antialias, BlendMode, Canvas, Color, FillRule, GradientStop, LineJoin, LinearGradient, Paint, Path, Point, Rect,
     RenderSettings, Shadow, SimdLevel, Stroke,
 };
 
@@ -97,5 +97,52 @@ fn every_fixture_gives_the_same_bytes() {
                 }
             }
         }
+    }
+}
+
+/// What opaque shapes hide is not drawn at all: the picture must be the one that drawing everything gives.
+#[test]
+fn hidden_shapes_leave_no_trace() {
+    let mut random = crate::oracle::Random::new(5);
+    let mut below = move |limit: i64| random.within(0..limit);
+    for round in 0..40 {
+        let mut shapes = Vec::new();
+        for _ in 0..60 {
+            let corners = 3 + below(6) as usize;
+            let spread = if below(3) == 0 { 2600 } else { 700 };
+            let (x, y) = (below(2000), below(1300));
+            let points: Vec<Point> = (0..corners)
+                .map(|_| (x + below(spread) - spread / 2, y + below(spread) - spread / 2))
+                .map(|(x, y)| Point::new(x as f32 / 10.0, y as f32 / 10.0))
+                .collect();
+            let opacity = if below(4) == 0 { 0.5 } else { 1.0 };
+            let color = Color::from_rgb8(below(256) as u8, below(256) as u8, 90).with_opacity(opacity);
+            shapes.push((points, color, below(12)));
+        }
+        // A canvas that is asked for its pixels after each shape cannot leave any out.
+        let draw = |at_once: bool| {
+            let mut canvas = Canvas::new(203, 131).unwrap();
+            for (points, color, kind) in &shapes {
+                let rule = if kind % 2 == 0 { FillRule::NonZero } else { FillRule::EvenOdd };
+                match kind {
+                    0 => canvas.clear(*color),
+                    1 => canvas.push_layer(0.7, BlendMode::Multiply),
+                    2 => canvas.fill_polygon(points, rule, Paint::new(*color).with_blend_mode(BlendMode::Source)),
+                    3 => canvas.fill_polygon(points, rule, Paint::new(*color).with_blend_mode(BlendMode::Difference)),
+                    4 => canvas.fill_rect(Rect::from_ltrb(points[0].x, points[0].y, points[1].x, points[1].y), *color),
+                    5 => canvas.fill_polygon(points, rule, Paint::new(*color).with_antialias(Antialias::Exact)),
+                    _ => canvas.fill_polygon(points, rule, *color),
+                }
+                if *kind == 1 {
+                    canvas.fill_polygon(points, rule, *color);
+                    canvas.pop_layer();
+                }
+                if !at_once {
+                    canvas.flush().unwrap();
+                }
+            }
+            canvas.into_pixmap().into_vec()
+        };
+        assert!(draw(true) == draw(false), "round {round}");
     }
 }

@@ -1,0 +1,147 @@
+//! Which blocks of a band are painted over: found front to back, before the band is painted back to front.
+//!
+//! An opaque shape that covers a whole block hides what is drawn there before it. Such shapes *claim* their
+//! blocks, the last shape first; what lies beneath a claimed block is neither swept nor painted. When the painting
+//! comes to the shape itself, it gives its claims back and paints them. No pixel differs: each is overwritten whole.
+
+use fearless_simd::Simd;
+
+use crate::geom::IntRect;
+use crate::raster::cell::Reach;
+use crate::raster::sweep::BlockSink;
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
+
+/// The hidden blocks of one band.
+#[derive(Debug, Default)]
+pub(super) struct Occlusion {
+    /// One bit a block, strip after strip.
+    hidden: Vec<u64>,
+    /// Words of `hidden` per strip.
+    words: usize,
+    /// The shape, by its place in the band, and the block; the front shape's first.
+    claims: Vec<Claim>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Claim {
+    order: u32,
+    strip: u16,
+    block: u16,
+}
+
+impl Occlusion {
+    /// Nothing is hidden.
+    pub(super) fn reset(&mut self, blocks: usize, strips: usize) {
+        self.claims.clear();
+        self.words = blocks.div_ceil(64);
+        self.hidden.clear();
+        self.hidden.resize(self.words * strips, 0);
+    }
+
+    /// Whether some block is hidden: if not, nothing needs to ask further.
+    pub(super) fn is_some(&self) -> bool {
+        !self.claims.is_empty()
+    }
+
+    #[inline(always)]
+    pub(super) fn is_hidden(&self, strip: usize, block: usize) -> bool {
+        self.hidden.get(strip * self.words + block / 64).is_some_and(|word| word >> (block % 64) & 1 == 1)
+    }
+
+    /// The first and the end of the blocks of `bounds` (device pixels) in a strip between which all that are
+    /// visible lie; empty if none is.
+    pub(super) fn visible(&self, strip: usize, bounds: IntRect) -> (usize, usize) {
+        let mut first = bounds.left.max(0) as usize / BLOCK_WIDTH;
+        let mut end = (bounds.right.max(0) as usize).div_ceil(BLOCK_WIDTH);
+        while first < end && self.is_hidden(strip, first) {
+            first += 1;
+        }
+        while first < end && self.is_hidden(strip, end - 1) {
+            end -= 1;
+        }
+        (first, end)
+    }
+
+    /// The shape at place `order` is about to be painted.
+    #[inline(always)]
+    pub(super) fn release(&mut self, order: u32) {
+        while let Some(claim) = self.claims.pop_if(|claim| claim.order <= order) {
+            let (strip, block) = (usize::from(claim.strip), usize::from(claim.block));
+            if let Some(word) = self.hidden.get_mut(strip * self.words + block / 64) {
+                *word &= !(1 << (block % 64));
+            }
+        }
+    }
+
+    fn claim(&mut self, order: u32, strip: usize, block: usize) {
+        if let Some(word) = self.hidden.get_mut(strip * self.words + block / 64)
+            && *word >> (block % 64) & 1 == 0
+        {
+            *word |= 1 << (block % 64);
+            self.claims.push(Claim { order, strip: strip as u16, block: block as u16 });
+        }
+    }
+}
+
+/// The part of a strip in which something of a shape can be seen.
+pub(super) fn reach((first, end): (usize, usize)) -> Reach {
+    if first < end { Reach::columns(first * BLOCK_WIDTH, end * BLOCK_WIDTH) } else { Reach::NOTHING }
+}
+
+/// Claims the blocks that a shape covers whole.
+pub(super) struct ClaimSink<'a> {
+    pub(super) occlusion: &'a mut Occlusion,
+    pub(super) order: u32,
+    pub(super) strip: usize,
+    /// Rows of the strip that exist.
+    pub(super) rows: usize,
+}
+
+impl<S: Simd> BlockSink<S> for ClaimSink<'_> {
+    #[inline(always)]
+    fn wants(&self, index: usize) -> bool {
+        !self.occlusion.is_hidden(self.strip, index)
+    }
+
+    #[inline(always)]
+    fn block(&mut self, _simd: S, index: usize, mask: &MaskBlock) {
+        if mask.iter().take(self.rows).all(|row| *row == [255; BLOCK_WIDTH]) {
+            self.occlusion.claim(self.order, self.strip, index);
+        }
+    }
+
+    #[inline(always)]
+    fn run(&mut self, _simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
+        if rows.iter().take(self.rows).all(|row| *row == 255) {
+            for index in start..end {
+                self.occlusion.claim(self.order, self.strip, index);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn claims_hide_until_they_are_released() {
+        let mut occlusion = Occlusion::default();
+        occlusion.reset(70, 2);
+        let bounds = IntRect::from_ltrb(17, 0, 70 * 16, 16);
+        assert_eq!(occlusion.visible(1, bounds), (1, 70));
+        occlusion.claim(9, 1, 1);
+        occlusion.claim(9, 1, 69);
+        // The one in front keeps it.
+        occlusion.claim(4, 1, 69);
+        occlusion.claim(4, 1, 2);
+        assert_eq!((occlusion.visible(1, bounds), occlusion.visible(0, bounds)), ((3, 69), (1, 70)));
+        assert_eq!(occlusion.visible(1, IntRect::from_ltrb(16, 0, 48, 16)), (3, 3));
+        occlusion.release(3);
+        assert!(occlusion.is_hidden(1, 2));
+        occlusion.release(4);
+        assert!(!occlusion.is_hidden(1, 2) && occlusion.is_hidden(1, 1) && occlusion.is_hidden(1, 69));
+        occlusion.release(9);
+        assert!(!occlusion.is_some() && occlusion.visible(1, bounds) == (1, 70));
+    }
+}
