@@ -63,6 +63,12 @@ impl Accumulator {
             .is_some_and(|words| words.iter().any(|word| *word != 0))
     }
 
+    /// The marks of a pixel's column.
+    #[inline(always)]
+    fn marks(&mut self, pixel: BandPixel) -> Option<&mut [u8; 2]> {
+        self.touched.get_mut(pixel.strip * self.stride..(pixel.strip + 1) * self.stride)?.get_mut(pixel.column)
+    }
+
     /// The accumulator of strip `index`, or `None` past the last.
     #[inline(always)]
     pub(crate) fn strip(&mut self, index: usize) -> Option<StripCells<'_>> {
@@ -317,6 +323,47 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
             add_piece::<S, TOUCH>(simd, &mut strip, start, end, winding, strip_top);
         }
     }
+}
+
+/// Adds the edges of a shape and notes which pixels they touch once and more often.
+///
+/// Where an edge goes on, up or down, from the end of the one before it, the pixel in which they meet is not touched
+/// twice: along each scanline only one of them is crossed, and the sum of their areas is right by any fill rule.
+#[inline(always)]
+pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edges: &[Edge], top: i32, strips: usize) {
+    let mut before: Option<Edge> = None;
+    for edge in edges {
+        let joint = before.filter(|before| before.goes_on_with(*edge)).and_then(|_| pixel_within(edge, top));
+        let marks = joint.and_then(|joint| cells.marks(joint).map(|marks| (joint, *marks)));
+        add_edge::<S, true>(simd, cells, *edge, top, strips, &[]);
+        if let Some((joint, [once, twice])) = marks
+            && let Some(marks) = cells.marks(joint)
+        {
+            let row = 1 << joint.row;
+            *marks = [marks[0] & !row | once & row, marks[1] & !row | twice & row];
+        }
+        before = Some(*edge);
+    }
+}
+
+/// A pixel of a band.
+#[derive(Clone, Copy)]
+struct BandPixel {
+    strip: usize,
+    column: usize,
+    row: usize,
+}
+
+/// The pixel in which an edge starts, if that is inside of it and not on a side, where its neighbour might be meant.
+#[inline(always)]
+fn pixel_within(edge: &Edge, top: i32) -> Option<BandPixel> {
+    let (x, y) = (edge.x0, edge.y0 - top);
+    let inside = |v: i32| v >= 0 && v & (fixed::ONE - 1) != 0;
+    if !inside(x) || !inside(y) {
+        return None;
+    }
+    let row = (y >> fixed::SHIFT) as usize;
+    Some(BandPixel { strip: row / BLOCK_HEIGHT, column: (x >> fixed::SHIFT) as usize, row: row % BLOCK_HEIGHT })
 }
 
 /// The rows of a column in which an edge climbs, as bits.

@@ -26,6 +26,14 @@ impl Edge {
     }
 }
 
+impl Edge {
+    /// Whether `next` starts where this edge ends and goes on up or down as it does.
+    #[inline(always)]
+    pub(crate) fn goes_on_with(self, next: Self) -> bool {
+        (self.x1, self.y1) == (next.x0, next.y0) && (self.y0 < self.y1) == (next.y0 < next.y1)
+    }
+}
+
 /// A line through an edge, from which x at any y is one multiplication away.
 ///
 /// x(y) is a pure function of the edge and of y, so that bands, strips and rows that share a scanline

@@ -2,9 +2,10 @@
 //!
 //! Summed areas are exact for a pixel that one edge passes through. Where two do, the sum knows how much
 //! each covers, not how much both do: the fill rule then has to be applied to the windings before
-//! the areas are added. This is done for whole rows of a strip in which some pixel is touched twice:
-//! the row is cut at edge ends and at crossings into slabs in which the edges keep their order, the rule
-//! picks the edges that separate inside from outside, and those alone are accumulated again.
+//! the areas are added. (Two that follow each other up or down count as one: no scanline crosses both.)
+//! This is done for whole rows of a strip in which some pixel is touched twice: the row is cut at edge ends
+//! and at crossings into slabs in which the edges keep their order, the rule picks the edges that
+//! separate inside from outside, and those alone are accumulated again.
 
 use super::cell::{FULL, StripCells};
 use super::edge::{Edge, EdgeLine};
@@ -62,7 +63,7 @@ struct Part {
 struct Crossing {
     top_x: i32,
     bottom_x: i32,
-    part: Part,
+    winding: i32,
 }
 
 /// Replaces the cells of rows in which some pixel is touched twice by exact ones, or those of all rows. `top` is
@@ -211,7 +212,7 @@ fn enter(parts: &[Part], top: i32, bottom: i32, active: &mut Vec<Crossing>) {
     active.clear();
     active.extend(parts.iter().filter(|part| part.y0 <= middle && middle < part.y1).map(|part| {
         let (y0, y1) = (part.y0.max(top), part.y1.min(bottom));
-        Crossing { top_x: part.line.x_at(y0), bottom_x: part.line.x_at(y1), part: *part }
+        Crossing { top_x: part.line.x_at(y0), bottom_x: part.line.x_at(y1), winding: part.winding }
     }));
     active.sort_unstable_by_key(|c| (c.top_x, c.bottom_x));
 }
@@ -253,7 +254,7 @@ fn add_slab(cells: &mut StripCells<'_>, row: usize, active: &mut [Crossing], top
     let mut around = 0_i32;
     for crossing in active.iter() {
         let was = inside(around, rule);
-        around = around.wrapping_add(crossing.part.winding);
+        around = around.wrapping_add(crossing.winding);
         let is = inside(around, rule);
         if was != is {
             let dy = bottom - top;

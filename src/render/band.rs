@@ -468,9 +468,7 @@ fn accumulate_inner<S: Simd>(
                 }
                 return rule.into();
             }
-            for edge in edges {
-                cell::add_edge::<S, true>(simd, &mut scratch.cells, *edge, top, frame.strips, &[]);
-            }
+            cell::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips);
             for strip in 0..frame.strips {
                 let Some(mut cells) = scratch.cells.strip(strip) else { break };
                 let is_crowded = crowded >> strip & 1 == 1;
