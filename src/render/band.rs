@@ -194,10 +194,10 @@ fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch) {
                 Some(Command::BeginLayer(_) | Command::BeginMask(_)) => depth += 1,
                 Some(Command::EndLayer(_) | Command::EndMask(..)) => depth = depth.saturating_sub(1),
                 // What is drawn first hides nothing.
-                Some(Command::Draw(draw)) if depth == 0 && order > 0 => {
-                    if may_hide(frame, draw, (item.end - item.start) as usize) {
-                        candidates.push((chunk_index, item_index, order));
-                    }
+                Some(Command::Draw(draw))
+                    if depth == 0 && order > 0 && may_hide(frame, draw, (item.end - item.start) as usize) =>
+                {
+                    candidates.push((chunk_index, item_index, order));
                 }
                 _ => {}
             }
