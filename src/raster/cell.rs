@@ -38,6 +38,8 @@ pub(crate) struct Accumulator {
     touched: Vec<[u8; 2]>,
     /// One bit for each block of 16 columns that may hold values, strip after strip.
     occupied: Vec<u64>,
+    /// Sums of more edges than `columns` can hold; empty but while a crowd of edges is added.
+    wide: Vec<[i64; BLOCK_HEIGHT]>,
     /// Columns per strip: the band's, rounded up to blocks, and one block to spill into.
     stride: usize,
     /// Words of `occupied` per strip.
@@ -61,6 +63,38 @@ impl Accumulator {
         self.occupied
             .get(index * self.words..(index + 1) * self.words)
             .is_some_and(|words| words.iter().any(|word| *word != 0))
+    }
+
+    /// Moves all values to where there is room for any number of them.
+    fn set_aside(&mut self) {
+        self.wide.resize(self.columns.len(), [0; BLOCK_HEIGHT]);
+        for (wide, column) in self.wide.iter_mut().zip(&mut self.columns) {
+            for (wide, value) in wide.iter_mut().zip(column) {
+                *wide += i64::from(std::mem::take(value));
+            }
+        }
+    }
+
+    /// Brings them back, as values whose sums along x are those set aside, but no farther from zero than a full
+    /// pixel's: what the nonzero rule makes of them is the same.
+    fn bring_back(&mut self) {
+        let full = i64::from(FULL);
+        for (columns, wide) in self.columns.chunks_mut(self.stride.max(1)).zip(self.wide.chunks(self.stride.max(1))) {
+            let (mut sum, mut before) = ([0_i64; BLOCK_HEIGHT], [0_i64; BLOCK_HEIGHT]);
+            for (column, wide) in columns.iter_mut().zip(wide) {
+                for (row, value) in column.iter_mut().enumerate() {
+                    if let (Some(sum), Some(before), Some(wide)) =
+                        (sum.get_mut(row), before.get_mut(row), wide.get(row))
+                    {
+                        *sum += wide;
+                        let cut = (*sum).clamp(-full, full);
+                        *value = (cut - *before) as i32;
+                        *before = cut;
+                    }
+                }
+            }
+        }
+        self.wide.clear();
     }
 
     /// The marks of a pixel's column.
@@ -323,6 +357,28 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
             add_piece::<S, TOUCH>(simd, &mut strip, start, end, winding, strip_top);
         }
     }
+}
+
+/// From so many edges on, the sums of their areas could leave the 32 bits of a cell.
+pub(crate) const CROWD: usize = (i32::MAX / FULL) as usize;
+
+/// Adds any number of edges, to be read by the nonzero rule: by the crowd, whose sums are set aside.
+#[inline(always)]
+pub(crate) fn add_crowd<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    edges: &[Edge],
+    top: i32,
+    strips: usize,
+    reaches: &[Reach],
+) {
+    for crowd in edges.chunks(CROWD - 1) {
+        for edge in crowd {
+            add_edge::<S, false>(simd, cells, *edge, top, strips, reaches);
+        }
+        cells.set_aside();
+    }
+    cells.bring_back();
 }
 
 /// Adds the edges of a shape and notes which pixels they touch once and more often.

@@ -7,7 +7,7 @@
 //! and at crossings into slabs in which the edges keep their order, the rule picks the edges that
 //! separate inside from outside, and those alone are accumulated again.
 
-use super::cell::{FULL, StripCells};
+use super::cell::{CROWD, StripCells};
 use super::edge::{Edge, EdgeLine};
 use super::sample::inside;
 use crate::num::fixed;
@@ -29,16 +29,13 @@ pub(crate) struct ExactScratch {
     active: Vec<Crossing>,
 }
 
-/// From so many edges in a strip on, the sums of their areas could leave the 32 bits of a cell.
-const CROWD: u32 = (i32::MAX / FULL) as u32;
-
 /// The strips (as bits) of a band with so many edges that their cells' sums mean nothing, so that all rows
 /// have to be resolved. `top` is the band's top in fixed point.
 pub(crate) fn crowded_strips(edges: &[Edge], top: i32, strips: usize) -> u128 {
-    if edges.len() < CROWD as usize {
+    if edges.len() < CROWD {
         return 0;
     }
-    let mut counts = [0_u32; 128];
+    let mut counts = [0_usize; 128];
     for edge in edges {
         let (_, y0, _, y1, _) = edge.downward();
         let strip = |y: i32| ((y - top) / (BLOCK_HEIGHT as i32 * fixed::ONE)).max(0) as usize;
@@ -109,7 +106,7 @@ pub(crate) fn resolve(
 }
 
 /// The rows with a pixel that two edges touch; clears the marks.
-pub(crate) fn take_touched(cells: &mut StripCells<'_>) -> u8 {
+fn take_touched(cells: &mut StripCells<'_>) -> u8 {
     let mut rows = 0;
     for_occupied(cells.occupied, |block| {
         let start = block * BLOCK_WIDTH;

@@ -460,24 +460,25 @@ fn accumulate_inner<S: Simd>(
     }
     let top = frame.top << 8;
     let grid = match antialias {
-        Antialias::Analytic | Antialias::Exact => {
-            let crowded = exact::crowded_strips(edges, top, frame.strips);
-            if antialias == Antialias::Analytic && crowded == 0 {
-                for edge in edges {
-                    cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips, &scratch.reaches);
-                }
+        Antialias::Analytic => {
+            // Sums by the even-odd rule may wrap around: what is lost is even.
+            if edges.len() >= cell::CROWD && rule == FillRule::NonZero {
+                cell::add_crowd(simd, &mut scratch.cells, edges, top, frame.strips, &scratch.reaches);
                 return rule.into();
             }
+            for edge in edges {
+                cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips, &scratch.reaches);
+            }
+            return rule.into();
+        }
+        Antialias::Exact => {
+            let crowded = exact::crowded_strips(edges, top, frame.strips);
             cell::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips);
             for strip in 0..frame.strips {
                 let Some(mut cells) = scratch.cells.strip(strip) else { break };
-                let is_crowded = crowded >> strip & 1 == 1;
-                if antialias == Antialias::Exact || is_crowded {
-                    let strip_top = top + ((strip * BLOCK_HEIGHT) << 8) as i32;
-                    exact::resolve(&mut cells, edges, strip_top, rule, is_crowded, &mut scratch.exact);
-                } else {
-                    exact::take_touched(&mut cells);
-                }
+                let strip_top = top + ((strip * BLOCK_HEIGHT) << 8) as i32;
+                let all_rows = crowded >> strip & 1 == 1;
+                exact::resolve(&mut cells, edges, strip_top, rule, all_rows, &mut scratch.exact);
             }
             return rule.into();
         }

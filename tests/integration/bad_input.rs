@@ -1239,22 +1239,29 @@ fn crowds_of_edges_look_the_same_at_every_setting() {
     for _ in 0..17_000 {
         path.rect(Rect::from_ltrb(8.3, 8.6, 40.1, 21.2));
     }
-    let draw = |settings: RenderSettings| {
-        let mut canvas = Canvas::with_settings(64, 80, settings).unwrap();
-        canvas.fill_path(&path, FillRule::NonZero, Color::BLACK);
-        canvas.into_pixmap()
-    };
-    let plain = draw(RenderSettings { level: SimdLevel::Scalar, threads: 1, band_height: 8 });
-    for level in SimdLevel::available() {
-        for band_height in [8, 16, 128] {
-            let settings = RenderSettings { level, threads: 2, band_height };
-            assert!(draw(settings) == plain, "{settings:?}");
+    for antialias in [Antialias::Analytic, Antialias::Exact] {
+        let draw = |settings: RenderSettings| {
+            let mut canvas = Canvas::with_settings(64, 80, settings).unwrap();
+            canvas.fill_path(&path, FillRule::NonZero, Paint::new(Color::BLACK).with_antialias(antialias));
+            canvas.into_pixmap()
+        };
+        let plain = draw(RenderSettings { level: SimdLevel::Scalar, threads: 1, band_height: 8 });
+        for level in SimdLevel::available() {
+            for band_height in [8, 16, 128] {
+                let settings = RenderSettings { level, threads: 2, band_height };
+                assert!(draw(settings) == plain, "{antialias:?} {settings:?}");
+            }
         }
-    }
-    // The rectangle covers 0.7 and 0.1 of the columns, 0.4 of the row at its sides.
-    let alpha = |x, y| f32::from(plain.pixel(x, y).unwrap()[3]);
-    for (x, y, coverage) in [(8, 12, 0.7), (40, 12, 0.1), (20, 8, 0.4), (20, 12, 1.0), (20, 50, 1.0), (8, 8, 0.28)] {
-        assert!((alpha(x, y) - coverage * 255.0).abs() < 2.0, "{} at {x}, {y}", alpha(x, y));
+        // The rectangle covers 0.7 and 0.1 of the columns, 0.4 of the row at its sides: by the sum of all, everything.
+        let alpha = |x, y| f32::from(plain.pixel(x, y).unwrap()[3]);
+        for (x, y, coverage) in [(8, 12, 0.7), (40, 12, 0.1), (20, 8, 0.4), (20, 12, 1.0), (20, 50, 1.0), (8, 8, 0.28)]
+        {
+            let coverage = if antialias == Antialias::Analytic { 1.0 } else { coverage };
+            assert!((alpha(x, y) - coverage * 255.0).abs() < 2.0, "{antialias:?}: {} at {x}, {y}", alpha(x, y));
+        }
+        // In the circle alone both are the same.
+        assert_eq!(plain.pixel(30, 14).unwrap()[3], 255);
+        assert_eq!(plain.pixel(2, 78).unwrap()[3], 0);
     }
 }
 
