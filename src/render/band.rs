@@ -33,6 +33,9 @@ const ROW_BYTES: usize = BLOCK_WIDTH * 4;
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
 /// A shape with more edges in a band than so many for each block that its bounds could hold is not asked what it hides.
 const EDGES_PER_BLOCK: usize = 4;
+/// So many edges are accumulated in search of hidden blocks in any case, more only if each block costs no more.
+const FAIR_TRIAL: usize = 256;
+const WORK_PER_BLOCK: usize = 12;
 const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 
 /// Working memory of one thread.
@@ -193,9 +196,8 @@ fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch) {
             match frame.list.commands.get(item.command as usize) {
                 Some(Command::BeginLayer(_) | Command::BeginMask(_)) => depth += 1,
                 Some(Command::EndLayer(_) | Command::EndMask(..)) => depth = depth.saturating_sub(1),
-                // What is drawn first hides nothing.
                 Some(Command::Draw(draw))
-                    if depth == 0 && order > 0 && may_hide(frame, draw, (item.end - item.start) as usize) =>
+                    if depth == 0 && may_hide(frame, draw, (item.end - item.start) as usize, order as usize) =>
                 {
                     candidates.push((chunk_index, item_index, order));
                 }
@@ -204,18 +206,25 @@ fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch) {
             order += 1;
         }
     }
+    let mut work = 0;
     for &(chunk, item, order) in candidates.iter().rev() {
+        // Where little is hidden, the search costs more than it gains.
+        if work > FAIR_TRIAL && scratch.occlusion.count() * WORK_PER_BLOCK < work {
+            break;
+        }
         let Some(band) = frame.chunks.get(chunk).and_then(|chunk| chunk.band(frame.index)) else { continue };
         let Some(item) = band.items.get(item) else { continue };
         let Some(Command::Draw(draw)) = frame.list.commands.get(item.command as usize) else { continue };
         let edges = band.edges.get(item.start as usize..item.end as usize).unwrap_or(&[]);
+        work += edges.len() + 1;
         claim_blocks(simd, frame, scratch, draw, edges, order);
     }
     scratch.candidates = candidates;
 }
 
-/// Whether a shape is worth a look: opaque, with room for whole blocks, and not mostly edges.
-fn may_hide(frame: &Frame<'_>, draw: &Draw, edges: usize) -> bool {
+/// Whether a shape is worth a look: opaque, with room for whole blocks, and not mostly edges; the less so, the fewer
+/// items lie beneath it.
+fn may_hide(frame: &Frame<'_>, draw: &Draw, edges: usize, beneath: usize) -> bool {
     let opaque = matches!(draw.blend_mode, BlendMode::SourceOver | BlendMode::Source)
         && draw.clip == ClipId::NONE
         && draw.antialias == Antialias::Analytic
@@ -225,7 +234,7 @@ fn may_hide(frame: &Frame<'_>, draw: &Draw, edges: usize) -> bool {
     let across =
         draw.bounds.right / BLOCK_WIDTH as i32 - (draw.bounds.left + BLOCK_WIDTH as i32 - 1) / BLOCK_WIDTH as i32;
     let blocks = across.max(0) as usize * ((bottom - top).max(0) as usize / BLOCK_HEIGHT);
-    opaque && edges <= EDGES_PER_BLOCK * blocks
+    opaque && edges <= EDGES_PER_BLOCK.min(beneath) * blocks && blocks * beneath > 0
 }
 
 /// Accumulates a shape where it can be seen and claims the blocks that it covers whole.

@@ -43,6 +43,11 @@ impl Occlusion {
         !self.claims.is_empty()
     }
 
+    /// How many blocks are hidden.
+    pub(super) fn count(&self) -> usize {
+        self.claims.len()
+    }
+
     #[inline(always)]
     pub(super) fn is_hidden(&self, strip: usize, block: usize) -> bool {
         self.hidden.get(strip * self.words + block / 64).is_some_and(|word| word >> (block % 64) & 1 == 1)
