@@ -8,6 +8,13 @@ pub(crate) trait PolygonSink {
     fn begin(&mut self, p: Point);
     /// Adds a straight edge to `p`.
     fn line(&mut self, p: Point);
+    /// Adds straight edges to the first `count` (0 ..= 8) points.
+    #[inline(always)]
+    fn lines(&mut self, points: &[Point; 8], count: usize) {
+        for p in points.iter().take(count) {
+            self.line(*p);
+        }
+    }
     /// Ends the polygon with an edge back to its start.
     fn end(&mut self);
 }
@@ -130,18 +137,23 @@ fn balance(pieces: u32) -> f32 {
 /// Writes the points of ((a·t + b)·t + c)·t + d at t = 1/n … (n − 1)/n, and `end`.
 #[inline(always)]
 fn polynomial<S: Simd, K: PolygonSink>(simd: S, [a, b, c, d]: [Point; 4], pieces: u32, end: Point, sink: &mut K) {
-    let step = 1.0 / pieces as f32;
-    let mut index = 1;
-    while index < pieces {
-        let counts = i32x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]) + index as i32;
-        let t = counts.to_float::<f32x8<S>>() * step;
-        let x = ((t * a.x + b.x) * t + c.x) * t + d.x;
-        let y = ((t * a.y + b.y) * t + c.y) * t + d.y;
-        let (x, y) = (x.to_array(), y.to_array());
-        for (x, y) in x.into_iter().zip(y).take((pieces - index) as usize) {
-            sink.line(Point::new(x, y));
+    if pieces == 2 {
+        // The commonest curve of small shapes has one point to compute.
+        let at = |a: f32, b: f32, c: f32, d: f32| ((0.5 * a + b) * 0.5 + c) * 0.5 + d;
+        sink.line(Point::new(at(a.x, b.x, c.x, d.x), at(a.y, b.y, c.y, d.y)));
+    } else if pieces > 2 {
+        let step = 1.0 / pieces as f32;
+        let mut index = 1;
+        while index < pieces {
+            let counts = i32x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]) + index as i32;
+            let t = counts.to_float::<f32x8<S>>() * step;
+            let x = ((t * a.x + b.x) * t + c.x) * t + d.x;
+            let y = ((t * a.y + b.y) * t + c.y) * t + d.y;
+            let (low, high) = x.interleave(y);
+            let points: [Point; 8] = bytemuck::cast([low.to_array(), high.to_array()]);
+            sink.lines(&points, (pieces - index).min(8) as usize);
+            index += 8;
         }
-        index += 8;
     }
     sink.line(end);
 }

@@ -7,8 +7,11 @@
 //! and at crossings into slabs in which the edges keep their order, the rule picks the edges that
 //! separate inside from outside, and those alone are accumulated again.
 
-use super::cell::{CROWD, StripCells};
+use fearless_simd::Simd;
+
+use super::cell::{Accumulator, BandPixel, StripCells};
 use super::edge::{Edge, EdgeLine};
+use super::kernel::{CROWD, add_edge};
 use super::sample::inside;
 use crate::num::fixed;
 use crate::style::FillRule;
@@ -44,6 +47,39 @@ pub(crate) fn crowded_strips(edges: &[Edge], top: i32, strips: usize) -> u128 {
         }
     }
     counts.iter().enumerate().fold(0, |bits, (strip, count)| bits | u128::from(*count >= CROWD) << strip)
+}
+
+/// Adds the edges of a shape and notes which pixels they touch once and more often.
+///
+/// Where an edge goes on, up or down, from the end of the one before it, the pixel in which they meet is not touched
+/// twice: along each scanline only one of them is crossed, and the sum of their areas is right by any fill rule.
+#[inline(always)]
+pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edges: &[Edge], top: i32, strips: usize) {
+    let mut before: Option<Edge> = None;
+    for edge in edges {
+        let joint = before.filter(|before| before.goes_on_with(*edge)).and_then(|_| pixel_within(edge, top));
+        let marks = joint.and_then(|joint| cells.marks(joint).map(|marks| (joint, *marks)));
+        add_edge::<S, true>(simd, cells, *edge, top, strips, &[]);
+        if let Some((joint, [once, twice])) = marks
+            && let Some(marks) = cells.marks(joint)
+        {
+            let row = 1 << joint.row;
+            *marks = [marks[0] & !row | once & row, marks[1] & !row | twice & row];
+        }
+        before = Some(*edge);
+    }
+}
+
+/// The pixel in which an edge starts, if that is inside of it and not on a side, where its neighbour might be meant.
+#[inline(always)]
+fn pixel_within(edge: &Edge, top: i32) -> Option<BandPixel> {
+    let (x, y) = (edge.x0, edge.y0 - top);
+    let inside = |v: i32| v >= 0 && v & (fixed::ONE - 1) != 0;
+    if !inside(x) || !inside(y) {
+        return None;
+    }
+    let row = (y >> fixed::SHIFT) as usize;
+    Some(BandPixel { strip: row / BLOCK_HEIGHT, column: (x >> fixed::SHIFT) as usize, row: row % BLOCK_HEIGHT })
 }
 
 /// The part of an edge in one row.

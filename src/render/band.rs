@@ -20,9 +20,11 @@ use crate::display_list::{ClipId, ClipKind, ClipNode, Command, DisplayList, Draw
 use crate::geom::IntRect;
 use crate::num::level::{SimdLevel, dispatch};
 use crate::paint::{PreparedPaint, fetch_block};
-use crate::raster::cell::{self, Accumulator, Reach};
+use crate::raster::bins::{BandItem, Edges};
+use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
 use crate::raster::exact::{self, ExactScratch};
+use crate::raster::kernel::{self, Reach};
 use crate::raster::sample::{self, SampleScratch};
 use crate::raster::sweep::{BlockSink, CoverageRule, sweep};
 use crate::style::{Antialias, FillRule};
@@ -42,6 +44,7 @@ const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 #[derive(Debug, Default)]
 pub(super) struct BandScratch {
     cells: Accumulator,
+    edges: Vec<Edge>,
     exact: ExactScratch,
     sample: SampleScratch,
     layers: Vec<LayerBuffer>,
@@ -86,8 +89,8 @@ impl LayerBuffer {
 /// The clips of one band: where their edges lie, and the coverage of those in use.
 #[derive(Debug, Default)]
 struct ClipCache {
-    /// Clip, chunk, and range of the chunk's edges; in order of clips.
-    edges: Vec<(u32, usize, (u32, u32))>,
+    /// Clip, chunk, and what the chunk lists for it; in order of clips.
+    edges: Vec<(u32, usize, BandItem)>,
     /// The coverage of a chain of clips, each within the one before.
     chain: Vec<(u32, BandMask)>,
     spare: Vec<BandMask>,
@@ -139,13 +142,13 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
             scratch.occlusion.release(order);
             order += 1;
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };
-            let edges = band.edges.get(item.start as usize..item.end as usize).unwrap_or(&[]);
+            let edges = chunk.edges(band, *item);
             match command {
                 Command::Draw(draw) => {
                     let Some(paint) = frame.list.paints.get(draw.paint as usize) else { continue };
                     paint_draw(simd, frame, target, scratch, draw, paint, edges);
                 }
-                Command::Clip(id) => scratch.clips.edges.push((id.0, chunk_index, (item.start, item.end))),
+                Command::Clip(id) => scratch.clips.edges.push((id.0, chunk_index, *item)),
                 Command::BeginLayer(LayerStart { bounds, .. }) | Command::BeginMask(bounds) => {
                     let mut layer = scratch.spare_layers.pop().unwrap_or_default();
                     layer.reset(*bounds);
@@ -197,7 +200,7 @@ fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch) {
                 Some(Command::BeginLayer(_) | Command::BeginMask(_)) => depth += 1,
                 Some(Command::EndLayer(_) | Command::EndMask(..)) => depth = depth.saturating_sub(1),
                 Some(Command::Draw(draw))
-                    if depth == 0 && may_hide(frame, draw, (item.end - item.start) as usize, order as usize) =>
+                    if depth == 0 && may_hide(frame, draw, chunk.edges(band, *item).len(), order as usize) =>
                 {
                     candidates.push((chunk_index, item_index, order));
                 }
@@ -212,10 +215,11 @@ fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch) {
         if work > FAIR_TRIAL && scratch.occlusion.count() * WORK_PER_BLOCK < work {
             break;
         }
-        let Some(band) = frame.chunks.get(chunk).and_then(|chunk| chunk.band(frame.index)) else { continue };
+        let Some(chunk) = frame.chunks.get(chunk) else { continue };
+        let Some(band) = chunk.band(frame.index) else { continue };
         let Some(item) = band.items.get(item) else { continue };
         let Some(Command::Draw(draw)) = frame.list.commands.get(item.command as usize) else { continue };
-        let edges = band.edges.get(item.start as usize..item.end as usize).unwrap_or(&[]);
+        let edges = chunk.edges(band, *item);
         work += edges.len() + 1;
         claim_blocks(simd, frame, scratch, draw, edges, order);
     }
@@ -244,7 +248,7 @@ fn claim_blocks<S: Simd>(
     frame: &Frame<'_>,
     scratch: &mut BandScratch,
     draw: &Draw,
-    edges: &[Edge],
+    edges: Edges<'_>,
     order: u32,
 ) {
     if !find_visible(frame, scratch, draw.bounds) {
@@ -296,7 +300,7 @@ fn paint_draw<S: Simd>(
     scratch: &mut BandScratch,
     draw: &Draw,
     paint: &PreparedPaint,
-    edges: &[Edge],
+    edges: Edges<'_>,
 ) {
     simd.vectorize(
         #[inline(always)]
@@ -312,7 +316,7 @@ fn paint_draw_inner<S: Simd>(
     scratch: &mut BandScratch,
     draw: &Draw,
     paint: &PreparedPaint,
-    edges: &[Edge],
+    edges: Edges<'_>,
 ) {
     let source = match paint {
         PreparedPaint::Nothing if draw.blend_mode == BlendMode::SourceOver => return,
@@ -356,7 +360,7 @@ fn paint_layer<S: Simd>(
     scratch: &mut BandScratch,
     layer: &LayerStart,
     pixels: &mut LayerBuffer,
-    edges: &[Edge],
+    edges: Edges<'_>,
 ) {
     simd.vectorize(
         #[inline(always)]
@@ -372,7 +376,7 @@ fn paint_layer_inner<S: Simd>(
     scratch: &mut BandScratch,
     layer: &LayerStart,
     pixels: &mut LayerBuffer,
-    edges: &[Edge],
+    edges: Edges<'_>,
 ) {
     clip_for(simd, frame, scratch, layer.clip);
     if !find_visible(frame, scratch, layer.bounds) {
@@ -442,7 +446,7 @@ fn accumulate<S: Simd>(
     scratch: &mut BandScratch,
     geometry: &Geometry,
     antialias: Antialias,
-    edges: &[Edge],
+    edges: Edges<'_>,
 ) -> CoverageRule {
     simd.vectorize(
         #[inline(always)]
@@ -457,7 +461,7 @@ fn accumulate_inner<S: Simd>(
     scratch: &mut BandScratch,
     geometry: &Geometry,
     antialias: Antialias,
-    edges: &[Edge],
+    edges: Edges<'_>,
 ) -> CoverageRule {
     let rule = match geometry {
         Geometry::Fill { rule, .. } => *rule,
@@ -471,18 +475,21 @@ fn accumulate_inner<S: Simd>(
     let grid = match antialias {
         Antialias::Analytic => {
             // Sums by the even-odd rule may wrap around: what is lost is even.
-            if edges.len() >= cell::CROWD && rule == FillRule::NonZero {
-                cell::add_crowd(simd, &mut scratch.cells, edges, top, frame.strips, &scratch.reaches);
+            if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
+                kernel::add_crowd(simd, &mut scratch.cells, edges, top, frame.strips, &scratch.reaches);
                 return rule.into();
             }
-            for edge in edges {
-                cell::add_edge::<S, false>(simd, &mut scratch.cells, *edge, top, frame.strips, &scratch.reaches);
-            }
+            let BandScratch { cells, reaches, .. } = scratch;
+            edges.for_each(
+                #[inline(always)]
+                |edge| kernel::add_edge::<S, false>(simd, cells, edge, top, frame.strips, reaches),
+            );
             return rule.into();
         }
         Antialias::Exact => {
+            let edges = &*listed(&mut scratch.edges, edges);
             let crowded = exact::crowded_strips(edges, top, frame.strips);
-            cell::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips);
+            exact::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips);
             for strip in 0..frame.strips {
                 let Some(mut cells) = scratch.cells.strip(strip) else { break };
                 let strip_top = top + ((strip * BLOCK_HEIGHT) << 8) as i32;
@@ -494,6 +501,7 @@ fn accumulate_inner<S: Simd>(
         Antialias::Supersample(grid) => grid.clamp(1, 16),
         Antialias::None => 1,
     };
+    let edges = &*listed(&mut scratch.edges, edges);
     for strip in 0..frame.strips {
         if let Some(mut cells) = scratch.cells.strip(strip) {
             let strip_top = top + ((strip * BLOCK_HEIGHT) << 8) as i32;
@@ -501,6 +509,13 @@ fn accumulate_inner<S: Simd>(
         }
     }
     CoverageRule::Samples(u16::from(grid) * u16::from(grid))
+}
+
+/// Edges side by side, for steps that look at them more than once.
+fn listed<'a>(list: &'a mut Vec<Edge>, edges: Edges<'_>) -> &'a mut Vec<Edge> {
+    list.clear();
+    edges.for_each(|edge| list.push(edge));
+    list
 }
 
 /// Adds the whole pixels of `spans` (in order of rows) that lie in this band.
@@ -568,10 +583,11 @@ fn build_clip_inner<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScrat
                 let found = scratch.clips.edges.binary_search_by_key(&id, |(clip, ..)| *clip);
                 let place = found.ok().and_then(|index| scratch.clips.edges.get(index)).copied();
                 let edges = place
-                    .and_then(|(_, chunk, (start, end))| {
-                        frame.chunks.get(chunk)?.band(frame.index)?.edges.get(start as usize..end as usize)
+                    .and_then(|(_, chunk, item)| {
+                        let chunk = frame.chunks.get(chunk)?;
+                        Some(chunk.edges(chunk.band(frame.index)?, item))
                     })
-                    .unwrap_or(&[]);
+                    .unwrap_or_default();
                 let rule = accumulate(simd, frame, scratch, geometry, *antialias, edges);
                 let parent = scratch.clips.chain.last().map(|(_, mask)| mask);
                 for strip in 0..frame.strips {

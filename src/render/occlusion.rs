@@ -7,7 +7,7 @@
 use fearless_simd::Simd;
 
 use crate::geom::IntRect;
-use crate::raster::cell::Reach;
+use crate::raster::kernel::Reach;
 use crate::raster::sweep::BlockSink;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
 

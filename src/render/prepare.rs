@@ -9,14 +9,17 @@ use crate::display_list::{ClipKind, Command, DisplayList, Geometry};
 use crate::geom::{IntRect, Point, Rect};
 use crate::num::level::{SimdLevel, dispatch};
 use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
+use crate::path::polygons::Polygons;
 use crate::path::stroke::{StrokeScratch, stroke};
-use crate::raster::edge::{BandList, EdgeBins, EdgeSink};
+use crate::raster::bins::{BandItem, BandList, EdgeBins, Edges};
 
 /// The edges of a range of commands. Chunks are prepared independently of each other; a band reads them
 /// one after another.
 #[derive(Debug, Default)]
 pub(crate) struct Chunk {
     bins: EdgeBins,
+    /// The shape in work.
+    polygons: Polygons,
     stroke: StrokeScratch,
 }
 
@@ -35,6 +38,11 @@ impl Chunk {
     /// What the chunk has for band `index`.
     pub(super) fn band(&self, index: usize) -> Option<&BandList> {
         self.bins.band(index)
+    }
+
+    /// The edges of one of its items.
+    pub(super) fn edges<'a>(&'a self, band: &'a BandList, item: BandItem) -> Edges<'a> {
+        self.bins.edges(band, item)
     }
 
     /// Lists the edges of `range` of the list's commands.
@@ -99,24 +107,23 @@ impl Chunk {
             self.bins.list(number, bounds);
             return;
         }
-        self.bins.begin(number, bounds);
-        let mut sink = EdgeSink::new(&mut self.bins, bounds, bounds.right >= frame.right);
+        self.polygons.clear();
         match geometry {
             Geometry::Fill { verbs, points, transform, .. } => {
                 let (verbs, points) = list.outline(*verbs, *points);
-                flatten_fill(simd, verbs, points, *transform, &mut sink);
+                flatten_fill(simd, verbs, points, *transform, &mut self.polygons);
             }
             Geometry::Stroke { verbs, points, transform, style } => {
                 let (verbs, points) = list.outline(*verbs, *points);
                 if let Some(style) = list.strokes.get(*style as usize) {
                     let visible = bounds.to_rect();
-                    stroke(verbs, points, style, *transform, TOLERANCE, visible, &mut self.stroke, &mut sink);
+                    stroke(verbs, points, style, *transform, TOLERANCE, visible, &mut self.stroke, &mut self.polygons);
                 }
             }
-            Geometry::Bounds => rectangle(bounds.to_rect(), &mut sink),
+            Geometry::Bounds => rectangle(bounds.to_rect(), &mut self.polygons),
             Geometry::Spans(_) => {}
         }
-        self.bins.end(bounds);
+        self.bins.add(simd, number, &self.polygons, bounds, bounds.right >= frame.right);
     }
 }
 
