@@ -12,6 +12,7 @@ use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
 use crate::path::stroke::{StrokeScratch, stroke};
 use crate::raster::bins::{BandItem, BandList, EdgeBins, Edges};
+use crate::style::Antialias;
 
 /// The edges of a range of commands. Chunks are prepared independently of each other; a band reads them
 /// one after another.
@@ -67,22 +68,24 @@ impl Chunk {
             let Some(command) = list.commands.get(index) else { break };
             let number = index as u32;
             match command {
-                Command::Draw(draw) => self.shape(simd, list, number, &draw.geometry, draw.bounds, frame),
+                Command::Draw(draw) => {
+                    self.shape(simd, list, number, &draw.geometry, draw.antialias, draw.bounds, frame)
+                }
                 Command::Clip(id) => {
                     if let Some(clip) = list.clip(*id)
-                        && let ClipKind::Geometry { geometry, .. } = &clip.kind
+                        && let ClipKind::Geometry { geometry, antialias } = &clip.kind
                     {
-                        self.shape(simd, list, number, geometry, clip.bounds, frame);
+                        self.shape(simd, list, number, geometry, *antialias, clip.bounds, frame);
                     }
                 }
                 Command::BeginLayer(layer) => self.bins.list(number, layer.bounds.intersect(frame)),
-                Command::EndLayer(layer) => self.shape(simd, list, number, &Geometry::Bounds, layer.bounds, frame),
+                Command::EndLayer(layer) => self.bins.list(number, layer.bounds.intersect(frame)),
                 Command::BeginMask(bounds) | Command::EndMask(bounds, _) => {
                     self.bins.list(number, bounds.intersect(frame));
                 }
                 Command::Shadow(_) => {
                     if let Some(shadow) = plan.shadow(number) {
-                        self.shape(simd, list, number, &Geometry::Bounds, shadow.bounds, frame);
+                        self.bins.list(number, shadow.bounds.intersect(frame));
                     }
                 }
             }
@@ -90,21 +93,19 @@ impl Chunk {
     }
 
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "a command's facts, from the only place that knows them")]
     fn shape<S: Simd>(
         &mut self,
         simd: S,
         list: &DisplayList,
         number: u32,
         geometry: &Geometry,
+        antialias: Antialias,
         bounds: IntRect,
         frame: IntRect,
     ) {
         let bounds = bounds.intersect(frame);
         if bounds.is_empty() {
-            return;
-        }
-        if let Geometry::Spans(_) = geometry {
-            self.bins.list(number, bounds);
             return;
         }
         self.polygons.clear();
@@ -120,11 +121,22 @@ impl Chunk {
                     stroke(verbs, points, style, *transform, TOLERANCE, visible, &mut self.stroke, &mut self.polygons);
                 }
             }
-            Geometry::Bounds => rectangle(bounds.to_rect(), &mut self.polygons),
-            Geometry::Spans(_) => {}
+            // What has no slanted edges is covered without a list of them, unless it is sampled.
+            Geometry::Rect(rect) if !is_exact(antialias) => {
+                rectangle(rect.intersect(bounds).to_rect(), &mut self.polygons);
+            }
+            Geometry::Rect(_) | Geometry::Bounds | Geometry::Spans(_) => {
+                self.bins.list(number, bounds);
+                return;
+            }
         }
         self.bins.add(simd, number, &self.polygons, bounds, bounds.right >= frame.right);
     }
+}
+
+/// Whether coverage is area, not a count of samples.
+pub(super) fn is_exact(antialias: Antialias) -> bool {
+    matches!(antialias, Antialias::Analytic | Antialias::Exact)
 }
 
 fn rectangle<K: PolygonSink>(rect: Rect, sink: &mut K) {
