@@ -51,10 +51,21 @@ impl Edges<'_> {
     /// The edges in the order of their outline. Those that lie along a scanline are left out.
     #[inline(always)]
     pub(crate) fn for_each(self, mut f: impl FnMut(Edge)) {
+        self.for_all(
+            #[inline(always)]
+            |edge| {
+                if edge.y0 != edge.y1 {
+                    f(edge);
+                }
+            },
+        );
+    }
+
+    /// As [`for_each`](Self::for_each), with those that lie along a scanline.
+    #[inline(always)]
+    pub(crate) fn for_all(self, mut f: impl FnMut(Edge)) {
         for start in self.starts {
-            if let Some([from, to]) = self.points.get(*start as usize..).and_then(|rest| rest.first_chunk::<2>())
-                && from.y != to.y
-            {
+            if let Some([from, to]) = self.points.get(*start as usize..).and_then(|rest| rest.first_chunk::<2>()) {
                 f(Edge { x0: from.x, y0: from.y, x1: to.x, y1: to.y });
             }
         }
@@ -216,11 +227,9 @@ fn list_by_band(bands: &mut [BandList], points: &[FixedPoint], start: usize, fir
     for (index, pair) in (start as u32..).zip(points.get(start..).unwrap_or(&[]).windows(2)) {
         let [from, to] = pair else { break };
         let (low, high) = if from.y < to.y { (from.y, to.y) } else { (to.y, from.y) };
-        if low == high {
-            continue;
-        }
+        // Horizontal edges are of their row's band: for exact coverage they matter.
         let first = ((low - first_top) >> band_shift) as usize;
-        let last = ((high - 1 - first_top) >> band_shift) as usize;
+        let last = ((high.max(low + 1) - 1 - first_top) >> band_shift) as usize;
         if first == last {
             if let Some(band) = bands.get_mut(first) {
                 band.edges.push(index);

@@ -6,6 +6,7 @@
 //! the edges added so far cover of it ([`kernel`](super::kernel)). What is added up are integers: the order of edges does
 //! not matter.
 
+use crate::style::FillRule;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 /// The accumulated value of a fully covered pixel.
@@ -19,9 +20,8 @@ pub(crate) type Column = [i32; BLOCK_HEIGHT];
 pub(crate) struct Accumulator {
     /// Columns of strip after strip; zero between draws.
     columns: Vec<Column>,
-    /// For each column the rows (as bits) that an edge passes through, and those where a second does.
-    /// Kept for exact antialiasing only.
-    touched: Vec<[u8; 2]>,
+    /// For each column which rows edges pass through. Kept for exact antialiasing only.
+    marks: Vec<Marks>,
     /// One bit for each block of 16 columns that may hold values, strip after strip.
     occupied: Vec<u64>,
     /// Sums of more edges than `columns` can hold; empty but while a crowd of edges is added.
@@ -40,7 +40,7 @@ impl Accumulator {
         self.stride = blocks * BLOCK_WIDTH;
         self.words = blocks.div_ceil(64);
         self.columns.resize(self.stride * strips, [0; BLOCK_HEIGHT]);
-        self.touched.resize(self.stride * strips, [0; 2]);
+        self.marks.resize(self.stride * strips, Marks::default());
         self.occupied.resize(self.words * strips, 0);
     }
 
@@ -61,9 +61,9 @@ impl Accumulator {
         }
     }
 
-    /// Brings them back, as values whose sums along x are those set aside, but no farther from zero than a full
-    /// pixel's: what the nonzero rule makes of them is the same.
-    pub(super) fn bring_back(&mut self) {
+    /// Brings them back, as values whose sums along x are those set aside, brought into the range in which the rule means
+    /// the same. What was set aside stays until [`forget`](Self::forget).
+    pub(super) fn bring_back(&mut self, rule: FillRule) {
         let full = i64::from(FULL);
         for (columns, wide) in self.columns.chunks_mut(self.stride.max(1)).zip(self.wide.chunks(self.stride.max(1))) {
             let (mut sum, mut before) = ([0_i64; BLOCK_HEIGHT], [0_i64; BLOCK_HEIGHT]);
@@ -73,20 +73,27 @@ impl Accumulator {
                         (sum.get_mut(row), before.get_mut(row), wide.get(row))
                     {
                         *sum += wide;
-                        let cut = (*sum).clamp(-full, full);
+                        let cut = match rule {
+                            FillRule::NonZero => (*sum).clamp(-full, full),
+                            FillRule::EvenOdd => sum.rem_euclid(2 * full),
+                        };
                         *value = (cut - *before) as i32;
                         *before = cut;
                     }
                 }
             }
         }
+    }
+
+    /// Drops what was set aside.
+    pub(crate) fn forget(&mut self) {
         self.wide.clear();
     }
 
     /// The marks of a pixel's column.
     #[inline(always)]
-    pub(super) fn marks(&mut self, pixel: BandPixel) -> Option<&mut [u8; 2]> {
-        self.touched.get_mut(pixel.strip * self.stride..(pixel.strip + 1) * self.stride)?.get_mut(pixel.column)
+    pub(super) fn marks(&mut self, pixel: BandPixel) -> Option<&mut Marks> {
+        self.marks.get_mut(pixel.strip * self.stride..(pixel.strip + 1) * self.stride)?.get_mut(pixel.column)
     }
 
     /// The accumulator of strip `index`, or `None` past the last.
@@ -94,8 +101,9 @@ impl Accumulator {
     pub(crate) fn strip(&mut self, index: usize) -> Option<StripCells<'_>> {
         Some(StripCells {
             columns: self.columns.get_mut(index * self.stride..(index + 1) * self.stride)?,
-            touched: self.touched.get_mut(index * self.stride..(index + 1) * self.stride)?,
+            marks: self.marks.get_mut(index * self.stride..(index + 1) * self.stride)?,
             occupied: self.occupied.get_mut(index * self.words..(index + 1) * self.words)?,
+            wide: self.wide.get(index * self.stride..(index + 1) * self.stride).unwrap_or(&[]),
         })
     }
 }
@@ -103,8 +111,29 @@ impl Accumulator {
 /// The accumulator of one strip.
 pub(crate) struct StripCells<'a> {
     pub(crate) columns: &'a mut [Column],
-    pub(crate) touched: &'a mut [[u8; 2]],
+    pub(crate) marks: &'a mut [Marks],
     pub(crate) occupied: &'a mut [u64],
+    /// What was set aside of a crowd of edges; else empty.
+    pub(super) wide: &'a [[i64; BLOCK_HEIGHT]],
+}
+
+/// Rows of a column, as bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Marks {
+    /// An edge touches the pixel.
+    pub(super) once: u8,
+    /// A second one does.
+    pub(super) twice: u8,
+    /// The pixel is one of several side by side that are touched, one of them twice.
+    pub(super) cluster: u8,
+}
+
+impl Marks {
+    #[inline(always)]
+    pub(super) fn touch(&mut self, rows: u8) {
+        self.twice |= self.once & rows;
+        self.once |= rows;
+    }
 }
 
 /// A pixel of a band.

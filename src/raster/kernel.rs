@@ -15,10 +15,11 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
 use super::bins::Edges;
-use super::cell::{Accumulator, Column, FULL, StripCells};
+use super::cell::{Accumulator, Column, FULL, Marks, StripCells};
 use super::edge::{Edge, EdgeLine};
 use crate::num::fixed;
 use crate::num::lanes::{max_f32, max_i32, min_f32, min_i32, round_f32};
+use crate::style::FillRule;
 use crate::surface::block::BLOCK_HEIGHT;
 
 /// An edge that runs over more columns than this in a row is walked row by row: eight lanes would
@@ -30,7 +31,7 @@ const FLAT_COLUMNS_PER_ROW: f32 = 10.0;
 const FINE_SHIFT: u32 = 12;
 
 /// A strip's height in fixed point.
-const STRIP_SHIFT: u32 = fixed::SHIFT + BLOCK_HEIGHT.ilog2();
+pub(super) const STRIP_SHIFT: u32 = fixed::SHIFT + BLOCK_HEIGHT.ilog2();
 
 /// A difference of x in 20.12 fixed point, in 1/256 pixel.
 #[inline(always)]
@@ -71,26 +72,41 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
     strips: usize,
     reaches: &[Reach],
 ) {
-    let (x0, y0, x1, y1, winding) = edge.downward();
+    let winding = edge.downward().4;
+    for_strip_parts(
+        edge,
+        top,
+        strips,
+        #[inline(always)]
+        |index, start, end| add_strip_part::<S, TOUCH>(simd, cells, index, start, end, winding, top, reaches),
+    );
+}
+
+/// Calls `part` with each of the strips below `top` that an edge crosses, and with where it starts and ends there: x in
+/// 20.12, y in 24.8 fixed point, downwards.
+#[inline(always)]
+pub(super) fn for_strip_parts(
+    edge: Edge,
+    top: i32,
+    strips: usize,
+    mut part: impl FnMut(usize, (i32, i32), (i32, i32)),
+) {
+    let (x0, y0, x1, y1, _) = edge.downward();
     let first = (y0 - top) >> STRIP_SHIFT;
     let last = (y1 - 1 - top) >> STRIP_SHIFT;
     let (start, end) = ((x0 << 4, y0), (x1 << 4, y1));
     if first == last {
         if (0..strips as i32).contains(&first) {
-            add_strip_part::<S, TOUCH>(simd, cells, first as usize, start, end, winding, top, reaches);
+            part(first as usize, start, end);
         }
         return;
     }
     let line = EdgeLine::new(x0, y0, x1, y1);
-    let mut from = start;
-    if first < 0 {
-        from = (line.fine_x_at(top), top);
-    }
-    let last_inside = last.min(strips as i32 - 1);
-    for index in first.max(0)..=last_inside {
+    let mut from = if first < 0 { (line.fine_x_at(top), top) } else { start };
+    for index in first.max(0)..=last.min(strips as i32 - 1) {
         let bottom = top + ((index + 1) << STRIP_SHIFT);
         let to = if index == last { end } else { (line.fine_x_at(bottom), bottom) };
-        add_strip_part::<S, TOUCH>(simd, cells, index as usize, from, to, winding, top, reaches);
+        part(index as usize, from, to);
         from = to;
     }
 }
@@ -132,39 +148,15 @@ fn add_piece<S: Simd, const TOUCH: bool>(
     winding: i32,
     top: i32,
 ) {
-    let (low_x, high_x) = if start_x < end_x { (start_x, end_x) } else { (end_x, start_x) };
-    let first = low_x >> FINE_SHIFT;
-    let last = high_x >> FINE_SHIFT;
-    let (run, rise) = (fine(end_x - start_x), (end_y - start_y) as f32);
-
-    if last - first > 4 && (last - first) as f32 * 256.0 > FLAT_COLUMNS_PER_ROW * rise {
+    let (first, last) = RowParts::<S>::columns((start_x, start_y), (end_x, end_y));
+    let rise = (end_y - start_y) as f32;
+    if last > first + 4 && (last - first) as f32 * 256.0 > FLAT_COLUMNS_PER_ROW * rise {
         let round = |x: i32| (x + (1 << (FINE_SHIFT - fixed::SHIFT - 1))) >> (FINE_SHIFT - fixed::SHIFT);
         add_flat::<TOUCH>(cells, round(start_x), start_y, round(end_x), end_y, top, winding);
         return;
     }
 
-    // Each row's part: from `upper` to `lower`, at x `upper_x` and `lower_x` right of the first column.
-    // Everything below is float until a pixel's area is rounded: x is then good to far less than 1/256 pixel.
-    let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) + (top - start_y);
-    let height = i32x8::splat(simd, end_y - start_y);
-    let zero = i32x8::splat(simd, 0);
-    let upper = min_i32(max_i32(rows, zero), height);
-    let lower = min_i32(max_i32(rows + 256, zero), height);
-    let dy = lower - upper;
-    let start8 = f32x8::splat(simd, fine(start_x - (first << FINE_SHIFT)));
-    let slope = run / rise;
-    let upper_x = upper.to_float::<f32x8<S>>() * slope + start8;
-    let lower_x = lower.to_float::<f32x8<S>>() * slope + start8;
-    let row = RowParts {
-        left: min_f32(upper_x, lower_x),
-        right: max_f32(upper_x, lower_x),
-        // Upright pieces have t = 0.
-        steep: f32x8::splat(simd, if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() }),
-        beyond: dy.to_float::<f32x8<S>>() * (2.0 * winding as f32),
-        total: dy * (512 * winding),
-    };
-
-    let (first, last) = (first as usize, last as usize);
+    let row = RowParts::new(simd, (start_x, start_y), (end_x, end_y), winding, top, first);
     if last - first <= 1 {
         cells.occupy_pair(first, last + 1);
         if let Some(columns) = cells.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) {
@@ -177,15 +169,21 @@ fn add_piece<S: Simd, const TOUCH: bool>(
         }
     }
     if TOUCH {
-        row.touch(simd, cells.touched.get_mut(first..=last).unwrap_or(&mut []), dy);
+        row.touch(simd, cells.marks.get_mut(first..=last).unwrap_or(&mut []));
     }
 }
 
 /// The parts of an edge in the eight rows of a strip; x in 1/256 pixel from the first column's left side.
 #[derive(Clone, Copy)]
-struct RowParts<S: Simd> {
-    left: f32x8<S>,
-    right: f32x8<S>,
+pub(super) struct RowParts<S: Simd> {
+    pub(super) left: f32x8<S>,
+    pub(super) right: f32x8<S>,
+    /// Where each part starts and ends, in 1/256 pixel below the edge's own start in the strip.
+    pub(super) upper: i32x8<S>,
+    pub(super) lower: i32x8<S>,
+    /// x where the edge starts in the strip, and its change per unit of y.
+    pub(super) start: f32,
+    pub(super) slope: f32,
     /// |dy / dx| times the winding.
     steep: f32x8<S>,
     /// What each 1/256 pixel right of a part adds.
@@ -195,24 +193,62 @@ struct RowParts<S: Simd> {
 }
 
 impl<S: Simd> RowParts<S> {
+    /// The first and last column between two points in 20.12 fixed point.
+    #[inline(always)]
+    pub(super) fn columns((start_x, _): (i32, i32), (end_x, _): (i32, i32)) -> (usize, usize) {
+        let (low, high) = if start_x < end_x { (start_x, end_x) } else { (end_x, start_x) };
+        ((low >> FINE_SHIFT) as usize, (high >> FINE_SHIFT) as usize)
+    }
+
+    /// The parts of the edge from (start_x, start_y) down to (end_x, end_y) in the strip at `top`, whose first column is
+    /// `first`. All is float until a pixel's area is rounded: x is then good to far less than 1/256 pixel.
+    #[inline(always)]
+    pub(super) fn new(
+        simd: S,
+        (start_x, start_y): (i32, i32),
+        (end_x, end_y): (i32, i32),
+        winding: i32,
+        top: i32,
+        first: usize,
+    ) -> Self {
+        let (run, rise) = (fine(end_x - start_x), (end_y - start_y) as f32);
+        let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) + (top - start_y);
+        let height = i32x8::splat(simd, end_y - start_y);
+        let zero = i32x8::splat(simd, 0);
+        let upper = min_i32(max_i32(rows, zero), height);
+        let lower = min_i32(max_i32(rows + 256, zero), height);
+        let dy = lower - upper;
+        let start = fine(start_x - ((first as i32) << FINE_SHIFT));
+        let start8 = f32x8::splat(simd, start);
+        let slope = run / rise;
+        let upper_x = upper.to_float::<f32x8<S>>() * slope + start8;
+        let lower_x = lower.to_float::<f32x8<S>>() * slope + start8;
+        Self {
+            left: min_f32(upper_x, lower_x),
+            right: max_f32(upper_x, lower_x),
+            upper,
+            lower,
+            start,
+            slope,
+            // Upright pieces have t = 0.
+            steep: f32x8::splat(simd, if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() }),
+            beyond: dy.to_float::<f32x8<S>>() * (2.0 * winding as f32),
+            total: dy * (512 * winding),
+        }
+    }
+
     /// Notes the rows of each column that the parts pass through.
     #[inline(always)]
-    fn touch(self, simd: S, columns: &mut [[u8; 2]], dy: i32x8<S>) {
-        let climbs = dy.simd_gt(i32x8::splat(simd, 0)).to_bitmask() as u8;
+    fn touch(self, simd: S, columns: &mut [Marks]) {
+        let climbs = self.lower.simd_gt(self.upper).to_bitmask() as u8;
         let mut side = 0.0;
         for marks in columns {
             let starts = self.left.simd_lt(f32x8::splat(simd, side + 256.0)).to_bitmask() as u8;
             let ends = self.right.simd_ge(f32x8::splat(simd, side)).to_bitmask() as u8;
-            touch(marks, climbs & starts & ends);
+            marks.touch(climbs & starts & ends);
             side += 256.0;
         }
     }
-}
-
-#[inline(always)]
-fn touch([once, twice]: &mut [u8; 2], rows: u8) {
-    *twice |= *once & rows;
-    *once |= rows;
 }
 
 #[inline(always)]
@@ -223,7 +259,7 @@ fn add_to<S: Simd>(simd: S, column: &mut Column, value: i32x8<S>) {
 /// Adds parts that lie in the first two columns.
 #[inline(always)]
 fn add_two_columns<S: Simd>(simd: S, [here, next, after]: &mut [Column; 3], row: RowParts<S>) {
-    let RowParts { left, right, steep, beyond, total } = row;
+    let RowParts { left, right, steep, beyond, total, .. } = row;
     let zero = f32x8::splat(simd, 0.0);
     let side = f32x8::splat(simd, 256.0);
     let t = max_f32(min_f32(right, side) - left, zero);
@@ -240,7 +276,7 @@ fn add_two_columns<S: Simd>(simd: S, [here, next, after]: &mut [Column; 3], row:
 /// Adds parts that lie in all columns but the last.
 #[inline(always)]
 fn add_columns<S: Simd>(simd: S, columns: &mut [Column], row: RowParts<S>) {
-    let RowParts { left, right, steep, beyond, total } = row;
+    let RowParts { left, right, steep, beyond, total, .. } = row;
     let zero = f32x8::splat(simd, 0.0);
     let whole = f32x8::splat(simd, 256.0);
     let (mut within, mut area) = (zero, i32x8::splat(simd, 0));
@@ -322,8 +358,8 @@ fn add_flat<const TOUCH: bool>(
         if TOUCH {
             let (left, right) = if x < next_x { (x, next_x) } else { (next_x, x) };
             let (first, last) = (left >> fixed::SHIFT, (right >> fixed::SHIFT).max(left >> fixed::SHIFT));
-            for marks in cells.touched.get_mut(first as usize..=last as usize).unwrap_or(&mut []) {
-                touch(marks, 1 << row);
+            for marks in cells.marks.get_mut(first as usize..=last as usize).unwrap_or(&mut []) {
+                marks.touch(1 << row);
             }
         }
         (x, y) = (next_x, next_y);
@@ -350,7 +386,8 @@ pub(crate) fn add_crowd<S: Simd>(
         );
         cells.set_aside();
     }
-    cells.bring_back();
+    cells.bring_back(FillRule::NonZero);
+    cells.forget();
 }
 
 #[cfg(test)]

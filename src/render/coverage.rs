@@ -120,21 +120,24 @@ fn accumulate_inner<S: Simd>(
             return Coverage::Cells(rule.into());
         }
         Antialias::Exact => {
-            let edges = &*listed(&mut scratch.edges, edges);
-            let crowded = exact::crowded_strips(edges, top, frame.strips);
-            exact::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips);
+            let edges = &*listed(&mut scratch.edges, edges, true);
+            if edges.len() >= kernel::CROWD {
+                exact::add_touching_crowd(simd, &mut scratch.cells, edges, top, frame.strips, rule);
+            } else {
+                exact::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips);
+            }
             for strip in 0..frame.strips {
                 let Some(mut cells) = scratch.cells.strip(strip) else { break };
                 let strip_top = frame.strip_top(strip) << fixed::SHIFT;
-                let all_rows = crowded >> strip & 1 == 1;
-                exact::resolve(&mut cells, edges, strip_top, rule, all_rows, &mut scratch.exact);
+                exact::resolve(simd, &mut cells, edges, strip_top, rule, &mut scratch.exact);
             }
+            scratch.cells.forget();
             return Coverage::Cells(rule.into());
         }
         Antialias::Supersample(grid) => grid.clamp(1, 16),
         Antialias::None => 1,
     };
-    let edges = &*listed(&mut scratch.edges, edges);
+    let edges = &*listed(&mut scratch.edges, edges, false);
     for strip in 0..frame.strips {
         if let Some(mut cells) = scratch.cells.strip(strip) {
             let strip_top = frame.strip_top(strip) << fixed::SHIFT;
@@ -144,10 +147,14 @@ fn accumulate_inner<S: Simd>(
     Coverage::Cells(CoverageRule::Samples(u16::from(grid) * u16::from(grid)))
 }
 
-/// Edges side by side, for steps that look at them more than once.
-fn listed<'a>(list: &'a mut Vec<Edge>, edges: Edges<'_>) -> &'a mut Vec<Edge> {
+/// Edges side by side, for steps that look at them more than once; with horizontal ones, if asked for.
+fn listed<'a>(list: &'a mut Vec<Edge>, edges: Edges<'_>, horizontal: bool) -> &'a mut Vec<Edge> {
     list.clear();
-    edges.for_each(|edge| list.push(edge));
+    if horizontal {
+        edges.for_all(|edge| list.push(edge));
+    } else {
+        edges.for_each(|edge| list.push(edge));
+    }
     list
 }
 
