@@ -72,9 +72,9 @@ impl Chunk {
                 Command::BeginMask(bounds) | Command::EndMask(bounds, _) => {
                     self.bins.list(number, bounds.intersect(frame));
                 }
-                Command::Shadow(_) => {
-                    if let Some(shadow) = plan.shadow(number) {
-                        self.shape(simd, list, number, &Geometry::Bounds, shadow.bounds, frame);
+                Command::Effect(_) => {
+                    if let Some(picture) = plan.picture(number) {
+                        self.shape(simd, list, number, &Geometry::Bounds, picture.bounds, frame);
                     }
                 }
             }

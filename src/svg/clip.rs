@@ -38,7 +38,11 @@ fn content(group: &usvg::Group) -> Option<Rect> {
     let mut boxes = group.children().iter().map(|node| {
         let bounds = convert::bounds(node.stroke_bounding_box());
         match node {
-            usvg::Node::Group(group) => convert::transform(group.transform()).map_rect(bounds),
+            // A filter may draw further out than what it applies to.
+            usvg::Node::Group(group) => {
+                let layer = convert::rect(group.layer_bounding_box());
+                convert::transform(group.transform()).map_rect(bounds.union(layer))
+            }
             _ => Some(bounds),
         }
     });

@@ -6,6 +6,7 @@
 
 mod clip;
 mod convert;
+mod filter;
 mod group;
 mod image;
 mod pattern;

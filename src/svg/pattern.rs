@@ -17,10 +17,6 @@ const MAX_TILE_PIXELS: f64 = (1_u32 << 25) as f64;
 /// The longest side of a tile.
 const MAX_TILE_SIDE: f64 = 32_767.0;
 
-/// How many patterns may be drawn inside each other: unlike groups, each has a canvas of its own and takes
-/// some of the thread's stack.
-const MAX_PATTERN_DEPTH: u32 = 16;
-
 /// A tile that was drawn, and what it was drawn for.
 pub(super) struct Tile {
     pattern: Arc<usvg::Pattern>,
@@ -96,24 +92,20 @@ impl Renderer<'_> {
         if let Some(tile) = self.tiles.iter().find(|tile| tile.grid == grid && Arc::ptr_eq(&tile.pattern, pattern)) {
             return Some(tile.image.clone());
         }
-        if self.pattern_depth >= MAX_PATTERN_DEPTH {
-            self.warnings.add(WarningKind::PatternDepth, pattern.id());
-            return None;
-        }
-        if !self.count_layer() {
+        if !self.enter_canvas(pattern.id()) {
             return None;
         }
         let Grid { size, scale } = grid;
         let fits = self.count_pixels(size.0, size.1);
         let canvas = fits.then(|| Canvas::with_settings(size.0, size.1, settings).ok());
         let Some(mut canvas) = canvas.flatten() else {
+            self.leave_canvas();
             self.warnings.add(WarningKind::PatternSize, pattern.id());
             return None;
         };
         canvas.transform(Transform::from_scale(scale.0, scale.1));
-        self.pattern_depth += 1;
         self.draw_children(pattern.root(), &mut canvas);
-        self.pattern_depth -= 1;
+        self.leave_canvas();
         let image = Arc::new(canvas.into_pixmap());
         self.tiles.push(Tile { pattern: pattern.clone(), grid, image: image.clone() });
         Some(image)
