@@ -49,7 +49,7 @@ impl Default for State {
 
 impl State {
     /// From user space to the recording's pixels.
-    pub(super) fn to_pixels(&self) -> Transform {
+    pub(super) fn to_pixels(self) -> Transform {
         if self.to_list.is_identity() {
             return self.transform;
         }

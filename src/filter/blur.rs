@@ -25,6 +25,8 @@ const MOST: f32 = 30_000.0;
 /// A blur in one direction.
 pub(super) struct Blur {
     passes: Vec<Pass>,
+    /// The same, box by box, for pictures that are cut off in between.
+    singles: Vec<Pass>,
 }
 
 enum Pass {
@@ -42,7 +44,9 @@ struct Boxes {
     /// Distances backwards and factors.
     taps: Vec<(usize, i16)>,
     count: usize,
-    reach: usize,
+    /// How far before a pixel and after it the pixels lie that it takes.
+    before: usize,
+    after: usize,
     /// One divided by the product of the widths.
     scale: f32,
 }
@@ -50,23 +54,24 @@ struct Boxes {
 impl Blur {
     /// A blur with this deviation, in pixels.
     pub(super) fn new(deviation: f32) -> Self {
-        let passes = match deviation {
-            deviation if !(deviation >= LEAST) => Vec::new(),
-            deviation if deviation < BOXES_FROM => vec![Pass::Kernel(kernel(deviation))],
+        let (passes, singles) = match deviation {
+            deviation if !(deviation >= LEAST) => (Vec::new(), Vec::new()),
+            deviation if deviation < BOXES_FROM => {
+                let kernel = kernel(deviation);
+                (vec![Pass::Kernel(kernel.clone())], vec![Pass::Kernel(kernel)])
+            }
             deviation => {
                 let [a, b, c] = widths(if deviation < MOST { deviation } else { MOST });
                 // What is summed thrice must fit 31 bits.
-                match 255_u64 * a as u64 * b as u64 * c as u64 {
-                    product if product < 1 << 31 => vec![Boxes::new(&[a, b, c])],
-                    _ if 255_u64 * (a as u64) * (b as u64) < 1 << 31 => vec![Boxes::new(&[a, b]), Boxes::new(&[c])],
-                    _ => vec![Boxes::new(&[a]), Boxes::new(&[b]), Boxes::new(&[c])],
-                }
-                .into_iter()
-                .map(Pass::Boxes)
-                .collect()
+                let fused = match 255_u64 * a as u64 * b as u64 * c as u64 {
+                    product if product < 1 << 31 => boxes(&[&[a, b, c]]),
+                    _ if 255_u64 * (a as u64) * (b as u64) < 1 << 31 => boxes(&[&[a, b], &[c]]),
+                    _ => boxes(&[&[a], &[b], &[c]]),
+                };
+                (fused, boxes(&[&[a], &[b], &[c]]))
             }
         };
-        Self { passes }
+        Self { passes, singles }
     }
 
     /// Whether it leaves every pixel as it is.
@@ -79,50 +84,84 @@ impl Blur {
         self.passes.iter().map(|pass| pass.reach() as i32).sum()
     }
 
-    fn run(&self, work: Work, source: &[Lanes], offset: isize, target: &mut [Lanes]) {
-        let Some((last, others)) = self.passes.split_last() else {
+    /// Blurs a line. `sides` are the positions of the source, if any, at which the picture is cut off in between.
+    fn run(&self, work: Work, source: &[Lanes], offset: isize, target: &mut [Lanes], sides: Option<(isize, isize)>) {
+        let passes = if sides.is_some() { &self.singles } else { &self.passes };
+        let Some((last, others)) = passes.split_last() else {
             copy(source, offset, target);
             return;
         };
-        // In between, all that is not zero.
+        // In between: all that is not zero, and the position of its first in the source.
         let mut between: Option<(Vec<Lanes>, isize)> = None;
         for pass in others {
-            let (line, before) = between.as_ref().map_or((source, 0), |(line, before)| (line.as_slice(), *before));
-            let reach = pass.reach();
-            let mut next = vec![[0; 64]; line.len() + 2 * reach];
-            pass.run(work, line, -(reach as isize), &mut next);
-            between = Some((next, before + reach as isize));
+            let (line, start) = between.as_ref().map_or((source, 0), |(line, start)| (line.as_slice(), *start));
+            let (low, high) = sides.unwrap_or((isize::MIN, isize::MAX));
+            let reach = pass.reach() as isize;
+            let next_start = (start - reach).max(low);
+            let next_end = (start + line.len() as isize + reach).min(high);
+            let mut next = vec![[0; 64]; usize::try_from(next_end - next_start).unwrap_or(0)];
+            pass.run(work, line, next_start - start, &mut next);
+            between = Some((next, next_start));
         }
-        let (line, before) = between.as_ref().map_or((source, 0), |(line, before)| (line.as_slice(), *before));
-        last.run(work, line, offset + before, target);
+        let (line, start) = between.as_ref().map_or((source, 0), |(line, start)| (line.as_slice(), *start));
+        last.run(work, line, offset - start, target);
     }
 }
 
+/// Box blurs in groups. One of an even width takes a pixel more on one side; over all, they lie evenly.
+fn boxes(groups: &[&[usize]]) -> Vec<Pass> {
+    let all: usize = groups.iter().map(|widths| widths.iter().sum::<usize>() - widths.len()).sum();
+    let (mut sum, mut before) = (0, 0);
+    let mut passes = Vec::new();
+    for widths in groups {
+        sum += widths.iter().sum::<usize>() - widths.len();
+        // Half of what has come together so far, rounded; the last time there is nothing to round.
+        let own = if sum == all { all / 2 } else { sum.div_ceil(2) } - before;
+        passes.push(Pass::Boxes(Boxes::new(widths, own)));
+        before += own;
+    }
+    passes
+}
+
 /// Blurs a picture; the answer holds what of it lies in `area`.
-pub(super) fn blur(image: &Image, area: IntRect, across_by: &Blur, down_by: &Blur, work: Work) -> Result<Image> {
+///
+/// With a `region` each of three boxes blurs what the one before it left inside of that, as SVG renderers do that work on a
+/// surface of the region's size; without, nothing is lost in between.
+pub(super) fn blur(
+    image: &Image,
+    area: IntRect,
+    region: Option<IntRect>,
+    across_by: &Blur,
+    down_by: &Blur,
+    work: Work,
+) -> Result<Image> {
     let reach = (across_by.reach(), down_by.reach());
     let area = grown(image.bounds(), reach, reach).intersect(area);
     // What lies further away than the blur reaches is not worth blurring downwards.
     let image = image.crop(grown(area, reach, reach).intersect(image.bounds()))?;
-    let columns = down(&image, area.top, area.bottom, work, |source, offset, target| {
-        down_by.run(work, source, offset, target);
+    let from = image.bounds();
+    let sides = |low: i32, high: i32, start: i32| (low as isize - start as isize, high as isize - start as isize);
+    let rows = region.map(|region| sides(region.top, region.bottom, from.top));
+    let columns = region.map(|region| sides(region.left, region.right, from.left));
+    let blocks = down(&image, area.top, area.bottom, work, |source, offset, target| {
+        down_by.run(work, source, offset, target, rows);
     })?;
-    across(&columns, area.left, area.right, work, |source, offset, target| {
-        across_by.run(work, source, offset, target);
+    across(&blocks, area.left, area.right, work, |source, offset, target| {
+        across_by.run(work, source, offset, target, columns);
     })
 }
 
 /// Blurs a picture by the same deviation in both directions, in pixels; the answer holds what of it lies in `area`.
 pub(crate) fn gaussian(image: &Image, area: IntRect, deviation: f32, work: Work) -> Result<Image> {
     let both = Blur::new(deviation);
-    blur(image, area, &both, &both, work)
+    blur(image, area, None, &both, &both, work)
 }
 
 impl Pass {
     fn reach(&self) -> usize {
         match self {
             Self::Kernel(weights) => weights.len().saturating_sub(1),
-            Self::Boxes(boxes) => boxes.reach,
+            Self::Boxes(boxes) => boxes.before.max(boxes.after),
         }
     }
 
@@ -177,7 +216,7 @@ fn convolve(weights: &[i32], source: &[Lanes], offset: isize, target: &mut [Lane
 }
 
 impl Boxes {
-    fn new(widths: &[usize]) -> Self {
+    fn new(widths: &[usize], before: usize) -> Self {
         let mut taps: Vec<(usize, i16)> = vec![(0, 1)];
         for width in widths {
             let mut product = taps.clone();
@@ -194,14 +233,15 @@ impl Boxes {
         Self {
             taps,
             count: widths.len(),
-            reach: (widths.iter().sum::<usize>() - widths.len()) / 2,
+            before,
+            after: widths.iter().sum::<usize>() - widths.len() - before,
             scale: (1.0 / product) as f32,
         }
     }
 
     #[inline(always)]
     fn run<const N: usize>(&self, source: &[Lanes], offset: isize, target: &mut [Lanes]) {
-        let reach = self.reach as isize;
+        let reach = self.after as isize;
         let mut sums = [[0_i32; 64]; N];
         // From the first position that the source reaches, so that nothing has been summed before it.
         let start = -reach;
@@ -254,7 +294,7 @@ fn kernel(deviation: f32) -> Vec<i32> {
 /// Three widths as equal as can be; an odd sum makes them lie evenly around the centre.
 fn widths(deviation: f32) -> [usize; 3] {
     let length = (f64::from(deviation) * BOXES_LENGTH / 2.0).floor() as usize * 2 + 1;
-    [length / 3, (length + 1) / 3, (length + 2) / 3]
+    [0, 1, 2].map(|more| (length + more) / 3)
 }
 
 #[cfg(test)]
@@ -291,7 +331,7 @@ mod tests {
             source[20 + y as usize] = *image.row(y).as_flattened().first_chunk().unwrap();
         }
         for widths in [vec![3, 4, 4], vec![5, 5, 5], vec![4, 4], vec![7], vec![9, 10, 10], vec![31, 31, 33]] {
-            let boxes = Boxes::new(&widths);
+            let boxes = Boxes::new(&widths, (widths.iter().sum::<usize>() - widths.len()) / 2);
             let mut found = vec![[0; 64]; 60];
             boxes.run_any(&source, 0, &mut found);
             for lane in 0..64 {
@@ -323,12 +363,11 @@ mod tests {
         let steps = 20_000;
         let from = -8.0;
         let width = (x - from) / f64::from(steps);
-        let density = |t: f64| (-t * t / 2.0).exp() / std::f64::consts::TAU.sqrt();
+        let density = |t: f64| trig::exp(-t * t / 2.0) / std::f64::consts::TAU.sqrt();
         (0..steps).map(|i| density(from + (f64::from(i) + 0.5) * width) * width).sum()
     }
 
     #[test]
-    #[expect(clippy::disallowed_methods, reason = "an oracle")]
     fn a_sharp_edge_becomes_the_normal_distribution() {
         for deviation in [0.3_f32, 0.8, 1.5, 2.0, 2.9, 3.0, 4.0, 7.7, 20.0, 60.0, 110.0, 150.0, 900.0] {
             let size = (deviation * 4.0).ceil() as i32 + 4;
@@ -336,7 +375,7 @@ mod tests {
             image.pixels_mut().fill([255; 4]);
             let blur_across = Blur::new(deviation);
             let area = IntRect::from_ltrb(-size, 0, size / 2, 1);
-            let out = blur(&image, area, &blur_across, &Blur::new(0.0), WORK).unwrap();
+            let out = blur(&image, area, None, &blur_across, &Blur::new(0.0), WORK).unwrap();
             for x in [-2.5, -1.5, -1.0, -0.5, -0.1, 0.0, 0.1, 0.5, 1.0] {
                 let x = (x * deviation).round() as i32;
                 // The pixel's centre is half a pixel to the right of its number.
@@ -369,6 +408,52 @@ mod tests {
                     assert_eq!(part, expected, "{area:?} {deviation} {level:?}");
                     let outside = whole.crop(area).unwrap();
                     assert_eq!(part.crop(area).unwrap(), outside, "{area:?} {deviation}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn with_a_region_boxes_are_cut_off_in_between() {
+        // Deviation 3: boxes of 5, 6 and 6 pixels. Everything but the region is transparent all along.
+        let region = IntRect::from_ltrb(0, 0, 30, 1);
+        let mut image = Image::new(region).unwrap();
+        image.pixels_mut().fill([255; 4]);
+        let by = Blur::new(3.0);
+        assert_eq!(widths(3.0), [5, 6, 6]);
+        let out = blur(&image, region, Some(region), &by, &Blur::new(0.0), WORK).unwrap();
+        let mut line = vec![255.0; 30];
+        for (width, before) in [(5, 2), (6, 3), (6, 2)] {
+            let value = |x: isize| usize::try_from(x).ok().and_then(|x| line.get(x)).copied().unwrap_or(0.0_f64);
+            line = (0..30).map(|x| (0..width).map(|k| value(x - before + k)).sum::<f64>() / width as f64).collect();
+        }
+        for (x, expected) in line.iter().enumerate() {
+            let found = f64::from(out.pixels()[x][3]);
+            // Three roundings.
+            assert!((found - expected).abs() < 1.6, "{x}: {found}, {expected}");
+        }
+        // A part of it is the same.
+        let area = IntRect::from_ltrb(2, 0, 5, 1);
+        let part = blur(&image, area, Some(region), &by, &Blur::new(0.0), WORK).unwrap();
+        assert_eq!(part, out.crop(area).unwrap());
+    }
+
+    #[test]
+    fn wide_blurs_do_not_move_the_picture() {
+        for deviation in [100.0, 104.0, 105.0, 106.0, 107.0, 108.0, 1200.0, 1201.0, 1202.0] {
+            let size = (deviation * 3.2) as i32;
+            let mut image = Image::new(IntRect::from_ltrb(-9, 0, 10, 1)).unwrap();
+            image.pixels_mut().fill([255; 4]);
+            // Enough of them that something is left.
+            let area = IntRect::from_ltrb(-size, 0, size + 1, 1);
+            let mut wide = image.crop(IntRect::from_ltrb(-size / 2, 0, size / 2 + 1, 1)).unwrap();
+            wide.pixels_mut().fill([255; 4]);
+            for region in [None, Some(area)] {
+                let out = blur(&wide, area, region, &Blur::new(deviation), &Blur::new(0.0), WORK).unwrap();
+                for x in 0..size {
+                    let (left, right) = (out.part(0, -x, 1 - x).1, out.part(0, x, x + 1).1);
+                    let value = |part: &[[u8; 4]]| part.first().map_or(0, |pixel| pixel[3]);
+                    assert!(value(left).abs_diff(value(right)) <= 1, "{deviation} {region:?} at {x}");
                 }
             }
         }

@@ -149,7 +149,8 @@ fn arithmetic(top: &Image, bottom: Image, area: IntRect, k: [f32; 4], work: Work
                 if value > 0.0 { if value < most { value } else { most } } else { 0.0 }
             };
             let a = component(3, 1.0);
-            *pixel = [component(0, a), component(1, a), component(2, a), a].map(|v| (v * 255.0 + 0.5) as u8);
+            // Rounded down, as others have it, but not below a whole number that was only just missed.
+            *pixel = [component(0, a), component(1, a), component(2, a), a].map(|v| (v * 255.0 + 1e-3) as u8);
         }
     });
     Ok(out)
@@ -184,9 +185,10 @@ mod tests {
         let area = IntRect::from_ltrb(0, 0, 3, 1);
         let operator = CompositeOperator::Arithmetic { k1: 0.5, k2: 0.2, k3: 0.1, k4: 0.3 };
         let out = composite(&top, bottom, area, operator, WORK).unwrap();
-        // 0.4 is 102, 0.5 is 127: 0.5 · 0.4 · 0.498 + 0.2 · 0.4 + 0.1 · 0.498 + 0.3 = 0.5294 → 135; likewise 0.7988, 0.3.
+        // 0.4 is 102, 0.5 is 127: 0.5 · 0.4 · 0.498 + 0.2 · 0.4 + 0.1 · 0.498 + 0.3 = 0.5294 = 135 / 255; likewise
+        // 0.7988 · 255 = 203.7 and 0.3 · 255 = 76.5, rounded down.
         let alphas: Vec<u8> = out.row(0).iter().map(|pixel| pixel[3]).collect();
-        assert_eq!(alphas, [135, 204, 77]);
+        assert_eq!(alphas, [135, 203, 76]);
     }
 
     #[test]

@@ -19,13 +19,22 @@ pub(super) struct DropShadow {
 }
 
 /// The picture over its shadow, in `area`.
-pub(super) fn drop_shadow(image: &Image, area: IntRect, shadow: &DropShadow, work: Work) -> Result<Image> {
+pub(super) fn drop_shadow(
+    image: &Image,
+    area: IntRect,
+    region: Option<IntRect>,
+    shadow: &DropShadow,
+    work: Work,
+) -> Result<Image> {
     let (dx, dy) = shadow.offset;
-    let mut cast = blur(image, moved(area, -dx, -dy), &shadow.across, &shadow.down, work)?;
+    let inside = moved(area, -dx, -dy).intersect(region.unwrap_or(EVERYTHING));
+    let mut cast = blur(image, inside, region, &shadow.across, &shadow.down, work)?;
     tint(&mut cast, shadow.color, work);
     let cast = offset(&cast, area, dx, dy)?;
     composite::blend(image, cast, area, BlendMode::SourceOver, work)
 }
+
+const EVERYTHING: IntRect = IntRect::from_ltrb(i32::MIN, i32::MIN, i32::MAX, i32::MAX);
 
 /// Gives a picture one colour, times its alpha.
 pub(crate) fn tint(image: &mut Image, color: Color, work: Work) {
@@ -52,7 +61,7 @@ mod tests {
             color: Color::from_rgba(1.0, 0.0, 0.0, 0.5),
         };
         let area = IntRect::from_ltrb(0, 0, 4, 1);
-        let out = drop_shadow(&image(0, 0, &["##"]), area, &shadow, WORK).unwrap();
+        let out = drop_shadow(&image(0, 0, &["##"]), area, None, &shadow, WORK).unwrap();
         assert_eq!(out.pixels(), [[255; 4], [255; 4], [128, 0, 0, 128]]);
     }
 }

@@ -15,7 +15,7 @@ use crate::color::Color;
 use crate::geom::Rect;
 use crate::surface::Pixmap;
 
-/// A filter: what becomes of a layer before it is drawn. See the [module](self) for an example.
+/// A filter: what becomes of a layer before it is drawn. See the [module](crate::filter) for an example.
 ///
 /// Lengths are in the user space in which the layer was begun. Where that space is turned or skewed against the
 /// canvas, the filter works along the axes of its own space and the result is turned with it.
@@ -190,8 +190,9 @@ pub enum Kind {
     },
     /// A Gaussian blur.
     ///
-    /// Below a standard deviation of two pixels it is the Gaussian itself, cut off at three deviations; above,
-    /// three box blurs in a row, whose cost does not depend on the deviation.
+    /// Below a standard deviation of three pixels it is the Gaussian itself, cut off at three deviations; above,
+    /// three box blurs in a row, whose cost does not depend on the deviation. In a filter with a region, what leaves that on
+    /// the way does not come back.
     GaussianBlur {
         /// What is blurred.
         input: Input,

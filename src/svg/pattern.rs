@@ -34,12 +34,26 @@ struct Grid {
 }
 
 /// The whole pixels of a tile's side, and the length that they show. The two differ by the rounding of a side of
-/// ten pixels or more: the tile is then repeated by whole pixels, as resvg does, and none is resampled. A shorter
-/// side, whose period this would change by more than a twentieth, is stretched to whole pixels instead.
+/// two pixels or more: the tile is then repeated by whole pixels, as resvg does, and none is resampled. A shorter
+/// side, whose period this might change by half, is stretched to whole pixels instead.
 fn whole(side: f64) -> (u32, f64) {
     // At most MAX_TILE_SIDE.
     let pixels = side.round().max(1.0);
-    (pixels as u32, if side < 10.0 { pixels } else { side })
+    (pixels as u32, if side < 2.0 { pixels } else { side })
+}
+
+/// How a tile's pixels are sampled.
+fn quality(to_device: Transform, grid: Grid) -> FilterQuality {
+    let near = |a: f32, b: f32| (a - b).abs() < 1e-5 * b;
+    if !to_device.is_scale_translate() {
+        // Turned pixels lie between the device's, where bilinear sampling would soften lines and text.
+        FilterQuality::Bicubic
+    } else if near(grid.scale.0, to_device.sx) && near(grid.scale.1, to_device.sy) {
+        // As large as the device's, they are moved to them, by half a pixel at most.
+        FilterQuality::Nearest
+    } else {
+        FilterQuality::Bilinear
+    }
 }
 
 impl Renderer<'_> {
@@ -54,8 +68,7 @@ impl Renderer<'_> {
             transform: own
                 .pre_concat(Transform::from_translate(rect.left, rect.top))
                 .pre_concat(Transform::from_scale(1.0 / grid.scale.0, 1.0 / grid.scale.1)),
-            // Turned pixels lie between the device's, where bilinear sampling would soften lines and text.
-            quality: if to_device.is_scale_translate() { FilterQuality::Bilinear } else { FilterQuality::Bicubic },
+            quality: quality(to_device, grid),
             ..Pattern::new(image)
         })
     }
