@@ -65,7 +65,14 @@ impl Canvas<'_> {
     fn draw_spans(&mut self, paint: Paint, spans: impl Fn(IntRect, &mut Vec<Span>)) {
         self.draw(paint, |canvas| {
             let mut list = Vec::new();
-            spans(canvas.state.bounds, &mut list);
+            let (dx, dy) = canvas.state.origin();
+            let bounds = canvas.state.bounds;
+            let on_device =
+                IntRect::from_ltrb(bounds.left - dx, bounds.top - dy, bounds.right - dx, bounds.bottom - dy);
+            spans(on_device, &mut list);
+            for span in &mut list {
+                *span = Span { y: span.y + dy, start: span.start + dx, end: span.end + dx };
+            }
             canvas.record_spans(list)
         });
     }
@@ -93,7 +100,7 @@ impl Canvas<'_> {
     /// antialiasing. A point lies in the pixel that holds it.
     pub(super) fn record_pixel_outline(&mut self, path: &Path) -> Option<(Geometry, IntRect)> {
         let clip = self.device_bounds(path, 0.0)?.intersect(self.state.bounds);
-        let transform = self.state.transform;
+        let transform = self.state.to_pixels();
         let mut chain = Chain::default();
         let mut start = Point::ZERO;
         let mut last = Point::ZERO;

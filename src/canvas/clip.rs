@@ -23,7 +23,7 @@ impl Canvas<'_> {
 
     /// Clips what is drawn from here on to `rect`, within the current clip.
     pub fn clip_rect(&mut self, rect: Rect, antialias: Antialias) {
-        let transform = self.state.transform;
+        let transform = self.state.to_pixels();
         if transform.is_scale_translate()
             && let Some(device) = transform.map_rect(rect)
         {
@@ -51,6 +51,8 @@ impl Canvas<'_> {
     /// the current clip. Nothing is drawn outside the mask.
     pub fn clip_mask(&mut self, mask: impl Into<Arc<Mask>>, x: i32, y: i32) {
         let mask = mask.into();
+        let (dx, dy) = self.state.origin();
+        let (x, y) = (x.saturating_add(dx), y.saturating_add(dy));
         let bounds = IntRect::from_xywh(x, y, mask.width(), mask.height());
         self.push_clip(ClipKind::Mask { mask, x, y }, bounds);
     }
@@ -84,10 +86,11 @@ impl Canvas<'_> {
         self.state.shadow = None;
     }
 
-    /// Ends the layer that the last [`push_layer`](Self::push_layer) started and draws it; the state is the one before it. Without a
-    /// layer, or with a mask open inside it, nothing happens.
+    /// Ends the layer that the last [`push_layer`](Self::push_layer) or [`push_layer_with`](Self::push_layer_with) started and
+    /// draws it; the state is the one before it. Without a layer, or with a mask open inside it, nothing happens.
     pub fn pop_layer(&mut self) {
-        if matches!(self.layers.last(), Some(OpenLayer { kind: OpenLayerKind::Layer(_), .. })) {
+        let kind = self.layers.last().map(|layer| &layer.kind);
+        if matches!(kind, Some(OpenLayerKind::Layer(_) | OpenLayerKind::Filter(_))) {
             self.close_layer();
         }
     }
@@ -111,7 +114,7 @@ impl Canvas<'_> {
         }
     }
 
-    fn open_layer(&mut self, kind: OpenLayerKind) {
+    pub(super) fn open_layer(&mut self, kind: OpenLayerKind) {
         let outer_saves = std::mem::take(&mut self.saves);
         self.layers.push(OpenLayer { outer: self.state, outer_saves, kind });
     }
@@ -119,9 +122,14 @@ impl Canvas<'_> {
     /// Ends the innermost layer or mask.
     pub(super) fn close_layer(&mut self) {
         let Some(OpenLayer { outer, outer_saves, kind }) = self.layers.pop() else { return };
-        self.list.commands.push(kind.end());
         self.state = outer;
         self.saves = outer_saves;
+        let size = match &kind {
+            OpenLayerKind::Filter(layer) => u64::from(layer.bounds.width()) * u64::from(layer.bounds.height()) * 4,
+            _ => 0,
+        };
+        kind.end(&mut self.list);
+        self.count_pictures(size);
     }
 
     /// Carries the clips that states still name over from a rendered recording to the new one.

@@ -3,7 +3,7 @@
 use super::Canvas;
 use crate::blend::BlendMode;
 use crate::color::Color;
-use crate::display_list::{ClipId, Command, Draw, Geometry, Paint, Shadow, Span};
+use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, Paint, Span};
 use crate::geom::{FixedRect, IntRect, Point, Rect, Transform};
 use crate::paint::PreparedPaint;
 use crate::path::{LineCap, LineJoin, Path, Radii, Stroke};
@@ -177,7 +177,7 @@ impl Canvas<'_> {
         if bounds.is_empty() {
             return;
         }
-        let prepared = PreparedPaint::new(&paint.shader, self.state.transform, paint.opacity);
+        let prepared = PreparedPaint::new(&paint.shader, self.state.to_pixels(), paint.opacity);
         if matches!(prepared, PreparedPaint::Nothing) && paint.blend_mode == BlendMode::SourceOver {
             return;
         }
@@ -227,7 +227,7 @@ impl Canvas<'_> {
             extent = bounds.intersect(reach);
             self.move_geometry(&mut geometry, -extent.left, -extent.top);
             let shift = Transform::from_translate(-(extent.left as f32), -(extent.top as f32));
-            self.state.transform = outer.transform.post_concat(shift);
+            self.state.to_list = outer.to_list.post_concat(shift);
             self.state.bounds = IntRect::from_xywh(0, 0, extent.width(), extent.height());
             let plain = Paint { blend_mode: BlendMode::SourceOver, ..paint.clone() };
             self.record(&plain, geometry, self.state.bounds);
@@ -244,12 +244,10 @@ impl Canvas<'_> {
         if list.commands.is_empty() || bounds.is_empty() {
             return;
         }
-        self.list.commands.push(Command::Shadow(Shadow {
+        self.list.commands.push(Command::Effect(Effect {
             list: Box::new(list),
             extent,
-            offset: (dx, dy),
-            deviation,
-            color: shadow.color,
+            kind: EffectKind::Shadow { offset: (dx, dy), deviation, color: shadow.color },
             blend_mode: paint.blend_mode,
             clip: self.state.clip,
             bounds,
@@ -275,7 +273,7 @@ impl Canvas<'_> {
     /// Stores a path's outline, with the device pixels that filling it can touch. A singular transform leaves no area,
     /// and nothing is filled: not even the slivers that rounding would make of it.
     pub(super) fn record_fill(&mut self, path: &Path, rule: FillRule) -> Option<(Geometry, IntRect)> {
-        let transform = self.state.transform;
+        let transform = self.state.to_pixels();
         if transform.is_singular() {
             return None;
         }
@@ -294,7 +292,7 @@ impl Canvas<'_> {
         if !rect.is_finite() {
             return None;
         }
-        if self.state.transform.is_axis_aligned() {
+        if self.state.to_pixels().is_axis_aligned() {
             return self.record_device_rect(rect);
         }
         let mut path = self.take_scratch();
@@ -306,7 +304,7 @@ impl Canvas<'_> {
 
     /// A rectangle of user space that is one in device space, too: it needs no outline.
     fn record_device_rect(&self, rect: Rect) -> Option<(Geometry, IntRect)> {
-        let transform = self.state.transform;
+        let transform = self.state.to_pixels();
         let corner = transform.map(Point::new(rect.left, rect.top));
         let opposite = transform.map(Point::new(rect.right, rect.bottom));
         let device = Rect::from_ltrb(corner.x, corner.y, opposite.x, opposite.y).normalized();
@@ -322,7 +320,8 @@ impl Canvas<'_> {
             return None;
         }
         // As for fills; but a hairline is a pixel wide at any transform.
-        if stroke.width > 0.0 && self.state.transform.is_singular() {
+        let transform = self.state.to_pixels();
+        if stroke.width > 0.0 && transform.is_singular() {
             return None;
         }
         // How far from the path the pen reaches: half its width, more at mitres and square caps.
@@ -340,13 +339,13 @@ impl Canvas<'_> {
         let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
         let style = self.list.strokes.len() as u32;
         self.list.strokes.push(stroke.clone());
-        Some((Geometry::Stroke { verbs, points, transform: self.state.transform, style }, bounds))
+        Some((Geometry::Stroke { verbs, points, transform, style }, bounds))
     }
 
     /// The device pixels that a path can touch when it is drawn with a pen that reaches so far in user space;
     /// `None` if that is not finite or outside the clip.
     pub(super) fn device_bounds(&self, path: &Path, reach: f32) -> Option<IntRect> {
-        let transform = self.state.transform;
+        let transform = self.state.to_pixels();
         if !transform.is_finite() {
             return None;
         }

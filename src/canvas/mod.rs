@@ -3,14 +3,16 @@
 mod aliased;
 mod clip;
 mod drawing;
+mod filter;
 mod image;
 mod pixels;
 mod state;
 
+pub use filter::LayerOptions;
 pub use state::{SaveGuard, Shadow};
 
 use crate::display_list::DisplayList;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geom::IntRect;
 use crate::path::Path;
 use crate::render::{RenderSettings, Renderer};
@@ -43,6 +45,10 @@ pub struct Canvas<'a> {
     state: State,
     saves: Saves,
     layers: Vec<OpenLayer>,
+    /// Bytes of the pictures that effects recorded since the last flush will take.
+    pictures: u64,
+    /// What a flush that nobody asked for could not draw.
+    failed: Option<Error>,
     /// For the outlines of simple shapes.
     scratch: Path,
 }
@@ -102,6 +108,8 @@ impl<'a> Canvas<'a> {
             state: State::default(),
             saves: Saves::default(),
             layers: Vec::new(),
+            pictures: 0,
+            failed: None,
             scratch: Path::new(),
         };
         canvas.state.bounds = canvas.frame();
@@ -138,7 +146,7 @@ impl<'a> Canvas<'a> {
     /// when it closes.
     ///
     /// # Errors
-    /// [`Error::Limit`](crate::Error::Limit) if there is no memory for a shadow; all else is drawn.
+    /// [`Error::Limit`](crate::Error::Limit) if there is no memory for a shadow or a filter; all else is drawn.
     pub fn flush(&mut self) -> Result<()> {
         if !self.layers.is_empty() {
             return Ok(());
@@ -148,13 +156,17 @@ impl<'a> Canvas<'a> {
             Target::Borrowed(pixels) => pixels.reborrow(),
         };
         let result = self.renderer.render(&self.list, &mut target, self.settings);
+        self.pictures = 0;
         if self.list.clips.is_empty() {
             self.list.clear();
         } else {
             let old = std::mem::take(&mut self.list);
             self.carry_clips(&old);
         }
-        result
+        match self.failed.take() {
+            Some(error) => Err(error),
+            None => result,
+        }
     }
 
     /// The finished picture. Layers that are still open are closed first.

@@ -22,11 +22,11 @@ impl Canvas<'_> {
             return self.target().crop(rect);
         }
         let mut copy = self.target().crop(self.frame())?;
-        let commands = self.list.commands.len();
-        self.list.commands.extend(self.layers.iter().rev().map(|layer| layer.kind.end()));
-        let result = self.renderer.render(&self.list, &mut copy.as_mut(), self.settings);
-        self.list.commands.truncate(commands);
-        result?;
+        let mut list = self.list.clone();
+        for layer in self.layers.iter().rev() {
+            layer.kind.end_copy(&mut list);
+        }
+        self.renderer.render(&list, &mut copy.as_mut(), self.settings)?;
         copy.as_ref().crop(rect)
     }
 
@@ -37,7 +37,8 @@ impl Canvas<'_> {
     /// As [`Pixmap::new`], for the copy that the recording keeps.
     pub fn write_pixels(&mut self, source: PixmapRef<'_>, x: i32, y: i32) -> Result<()> {
         let copy = source.crop(IntRect::from_xywh(0, 0, source.width(), source.height()))?;
-        let rect = IntRect::from_xywh(x, y, source.width(), source.height());
+        let (dx, dy) = self.state.origin();
+        let rect = IntRect::from_xywh(x.saturating_add(dx), y.saturating_add(dy), source.width(), source.height());
         let mut pattern = Pattern::new(Arc::new(copy));
         pattern.quality = FilterQuality::Nearest;
         (pattern.spread_x, pattern.spread_y) = (SpreadMode::Decal, SpreadMode::Decal);

@@ -3,8 +3,10 @@
 use std::ops::{Deref, DerefMut};
 
 use super::Canvas;
+use crate::blend::BlendMode;
 use crate::color::Color;
-use crate::display_list::{ClipId, Command, LayerStart};
+use crate::display_list::{ClipId, Command, DisplayList, Effect, EffectKind, LayerStart};
+use crate::filter::PlacedFilter;
 use crate::geom::{IntRect, Transform};
 
 /// A shadow that shapes cast.
@@ -23,16 +25,46 @@ pub struct Shadow {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct State {
+    /// From user space to device pixels.
     pub(super) transform: Transform,
+    /// From device pixels to those of the recording, which differ where it is for an effect's own picture.
+    pub(super) to_list: Transform,
     pub(super) clip: ClipId,
-    /// The device pixels that the clip can let through.
+    /// The recording's pixels that the clip can let through.
     pub(super) bounds: IntRect,
     pub(super) shadow: Option<Shadow>,
 }
 
 impl Default for State {
     fn default() -> Self {
-        Self { transform: Transform::IDENTITY, clip: ClipId::NONE, bounds: IntRect::EMPTY, shadow: None }
+        Self {
+            transform: Transform::IDENTITY,
+            to_list: Transform::IDENTITY,
+            clip: ClipId::NONE,
+            bounds: IntRect::EMPTY,
+            shadow: None,
+        }
+    }
+}
+
+impl State {
+    /// From user space to the recording's pixels.
+    pub(super) fn to_pixels(self) -> Transform {
+        if self.to_list.is_identity() {
+            return self.transform;
+        }
+        let mut all = self.to_list.pre_concat(self.transform);
+        // Turned there and back again, what is left of a turn is rounding.
+        let least = (all.sx.abs() + all.sy.abs()) * 1e-6;
+        if all.kx.abs() < least && all.ky.abs() < least {
+            (all.kx, all.ky) = (0.0, 0.0);
+        }
+        all
+    }
+
+    /// How far the recording's pixels lie from the device's, where no effect turns them.
+    pub(super) fn origin(&self) -> (i32, i32) {
+        (self.to_list.tx as i32, self.to_list.ty as i32)
     }
 }
 
@@ -80,22 +112,78 @@ pub(super) struct OpenLayer {
 pub(super) enum OpenLayerKind {
     Layer(LayerStart),
     Mask(IntRect, crate::surface::MaskKind),
+    Filter(Box<FilterLayer>),
+}
+
+/// A layer that becomes a picture of its own.
+#[derive(Debug)]
+pub(super) struct FilterLayer {
+    /// The recording around it.
+    pub(super) outer_list: DisplayList,
+    pub(super) filter: PlacedFilter,
+    /// From the filter's pixels to those of the recording around it.
+    pub(super) to_outer: Transform,
+    /// The filter's pixels that the layer holds.
+    pub(super) extent: IntRect,
+    /// The pixels of the layer's recording outside of which nothing is computed, in layers inside it either.
+    pub(super) limit: IntRect,
+    pub(super) opacity: f32,
+    pub(super) blend_mode: BlendMode,
+    pub(super) clip: ClipId,
+    /// The outer recording's pixels that it may touch.
+    pub(super) bounds: IntRect,
+}
+
+impl FilterLayer {
+    /// The command that draws what `list` recorded.
+    pub(super) fn effect(&self, list: DisplayList) -> Command {
+        Command::Effect(Effect {
+            list: Box::new(list),
+            extent: self.extent,
+            kind: EffectKind::Filter { filter: self.filter.clone(), to_device: self.to_outer, opacity: self.opacity },
+            blend_mode: self.blend_mode,
+            clip: self.clip,
+            bounds: self.bounds,
+        })
+    }
 }
 
 impl OpenLayerKind {
-    /// The command that ends it.
-    pub(super) fn end(&self) -> Command {
+    /// Ends it in a recording: `list` is the one around it then.
+    pub(super) fn end(self, list: &mut DisplayList) {
         match self {
-            Self::Layer(layer) => Command::EndLayer(layer.clone()),
-            Self::Mask(bounds, kind) => Command::EndMask(*bounds, *kind),
+            Self::Layer(layer) => list.commands.push(Command::EndLayer(layer)),
+            Self::Mask(bounds, kind) => list.commands.push(Command::EndMask(bounds, kind)),
+            Self::Filter(mut layer) => {
+                let outer = std::mem::take(&mut layer.outer_list);
+                let inner = std::mem::replace(list, outer);
+                if !layer.bounds.is_empty() {
+                    list.commands.push(layer.effect(inner));
+                }
+            }
         }
     }
 
-    /// The device pixels that it holds.
+    /// As [`end`](Self::end), of a copy.
+    pub(super) fn end_copy(&self, list: &mut DisplayList) {
+        match self {
+            Self::Layer(layer) => list.commands.push(Command::EndLayer(layer.clone())),
+            Self::Mask(bounds, kind) => list.commands.push(Command::EndMask(*bounds, *kind)),
+            Self::Filter(layer) => {
+                let inner = std::mem::replace(list, layer.outer_list.clone());
+                if !layer.bounds.is_empty() {
+                    list.commands.push(layer.effect(inner));
+                }
+            }
+        }
+    }
+
+    /// The recording's pixels that it holds.
     pub(super) fn bounds(&self) -> IntRect {
         match self {
             Self::Layer(layer) => layer.bounds,
             Self::Mask(bounds, _) => *bounds,
+            Self::Filter(layer) => IntRect::from_xywh(0, 0, layer.extent.width(), layer.extent.height()),
         }
     }
 }
@@ -164,7 +252,11 @@ impl<'a> Canvas<'a> {
 
     /// The device pixels that the current clip can let through.
     pub fn clip_bounds(&self) -> IntRect {
-        self.state.bounds
+        if self.state.to_list.is_identity() {
+            return self.state.bounds;
+        }
+        let back = self.state.to_list.invert().and_then(|back| back.map_rect(self.state.bounds.to_rect()));
+        back.map_or(IntRect::EMPTY, |bounds| bounds.round_out())
     }
 
     /// Lets what is drawn from here on cast a shadow, or none.

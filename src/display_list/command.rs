@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use crate::blend::BlendMode;
+use crate::color::Color;
+use crate::filter::PlacedFilter;
 use crate::geom::{FixedRect, IntRect, Point, Transform};
 use crate::paint::PreparedPaint;
 use crate::path::{Stroke, Verb};
@@ -90,22 +92,38 @@ pub(crate) struct LayerStart {
     pub(crate) clip: ClipId,
 }
 
-/// A blurred, tinted, moved copy of what a list draws.
+/// A picture made of what a recording of its own draws, by an effect that needs it whole.
 #[derive(Clone, Debug)]
-pub(crate) struct Shadow {
-    /// What casts it, moved so that `extent` starts at (0, 0).
+pub(crate) struct Effect {
+    /// What it applies to, moved so that `extent` starts at (0, 0).
     pub(crate) list: Box<DisplayList>,
-    /// The device pixels of what casts it.
+    /// The pixels of what it applies to: the device's, or the filter's own.
     pub(crate) extent: IntRect,
-    /// In device pixels.
-    pub(crate) offset: (i32, i32),
-    /// The Gaussian's standard deviation, in device pixels.
-    pub(crate) deviation: f32,
-    /// Straight RGBA.
-    pub(crate) color: crate::color::Color,
+    pub(crate) kind: EffectKind,
     pub(crate) blend_mode: BlendMode,
     pub(crate) clip: ClipId,
+    /// The device pixels that it may touch.
     pub(crate) bounds: IntRect,
+}
+
+/// What becomes of the picture.
+#[derive(Clone, Debug)]
+pub(crate) enum EffectKind {
+    /// A blurred, tinted, moved copy of its alpha.
+    Shadow {
+        /// In device pixels.
+        offset: (i32, i32),
+        /// The Gaussian's standard deviation, in device pixels.
+        deviation: f32,
+        color: Color,
+    },
+    /// What a filter makes of it.
+    Filter {
+        filter: PlacedFilter,
+        /// From the filter's pixels to the device's.
+        to_device: Transform,
+        opacity: f32,
+    },
 }
 
 /// One step of a recording.
@@ -119,7 +137,7 @@ pub(crate) enum Command {
     /// What follows becomes a mask for the layer below.
     BeginMask(IntRect),
     EndMask(IntRect, MaskKind),
-    Shadow(Shadow),
+    Effect(Effect),
 }
 
 /// A recording.

@@ -3,5 +3,7 @@
 mod command;
 mod paint;
 
-pub(crate) use command::{ClipId, ClipKind, ClipNode, Command, DisplayList, Draw, Geometry, LayerStart, Shadow, Span};
+pub(crate) use command::{
+    ClipId, ClipKind, ClipNode, Command, DisplayList, Draw, Effect, EffectKind, Geometry, LayerStart, Span,
+};
 pub use paint::{ImagePaint, Paint};

@@ -27,3 +27,8 @@ pub(crate) fn acos(x: f64) -> f64 {
 pub(crate) fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
+
+/// `base` to the power of `exponent`.
+pub(crate) fn pow(base: f64, exponent: f64) -> f64 {
+    libm::pow(base, exponent)
+}

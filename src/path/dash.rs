@@ -373,7 +373,7 @@ impl<B: PointMap, A: PointMap, K: PolygonSink> Walker<'_, '_, B, A, K> {
         }
     }
 
-    /// Goes on to the next interval at a point of the path. A gap without length is none.
+    /// Goes on to the next interval at a point of the path. A gap without length ends a dash and starts one.
     fn turn_over(&mut self, p: Point, direction: Point) {
         self.spent = self.spent.saturating_add(1);
         if f64::from(self.spent) > 4.0 * MOST_INTERVALS {
@@ -384,6 +384,9 @@ impl<B: PointMap, A: PointMap, K: PolygonSink> Walker<'_, '_, B, A, K> {
             self.index = if self.index + 1 < self.ends.len() { self.index + 1 } else { 0 };
             self.left = self.length_of(self.index);
             if !self.is_on() && self.left == 0.0 {
+                if self.drawing {
+                    self.pen_up();
+                }
                 self.index = if self.index + 1 < self.ends.len() { self.index + 1 } else { 0 };
                 self.left = self.length_of(self.index);
             }
@@ -623,8 +626,8 @@ mod tests {
             // An odd pattern is 1 on, 2 off, 3 on, 1 off, 2 on, 3 off.
             (&[1.0, 2.0, 3.0], 0.0, &[(0.0, 1.0), (3.0, 6.0), (7.0, 9.0)]),
             (&[4.0], 0.0, &[(0.0, 4.0), (8.0, 12.0)]),
-            // A gap without length is none.
-            (&[3.0, 0.0, 1.0, 2.0], 0.0, &[(0.0, 4.0), (6.0, 10.0)]),
+            // A gap without length parts two dashes that touch.
+            (&[3.0, 0.0, 1.0, 2.0], 0.0, &[(0.0, 3.0), (3.0, 4.0), (6.0, 9.0), (9.0, 10.0)]),
         ];
         for (pattern, offset, expected) in cases {
             let got = spans(&draw(&line(0.0, 12.0), &Stroke::new(2.0).with_dash(pattern, offset)));

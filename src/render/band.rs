@@ -135,14 +135,14 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                     }
                     scratch.spare_layers.push(mask);
                 }
-                Command::Shadow(shadow) => {
-                    let Some(picture) = frame.plan.shadow(item.command) else { continue };
+                Command::Effect(effect) => {
+                    let Some(picture) = frame.plan.picture(item.command) else { continue };
                     let draw = Draw {
                         geometry: Geometry::Bounds,
                         paint: 0,
                         antialias: Antialias::None,
-                        blend_mode: shadow.blend_mode,
-                        clip: shadow.clip,
+                        blend_mode: effect.blend_mode,
+                        clip: effect.clip,
                         bounds: picture.bounds,
                     };
                     paint_draw(simd, frame, target, scratch, &draw, &picture.paint, edges);

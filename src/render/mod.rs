@@ -1,7 +1,7 @@
 //! From a recording to pixels.
 //!
 //! [`prepare`] turns the recording's shapes into edges listed by band, [`band`] paints one band from its
-//! first command to its last, and [`pool`] hands bands to threads. A band's pixels depend on the recording
+//! first command to its last, and [`pool`](crate::pool) hands bands to threads. A band's pixels depend on the recording
 //! alone, so that neither the number of threads nor the bands' height shows.
 
 mod band;
@@ -13,7 +13,6 @@ mod layer;
 mod occlusion;
 mod painter;
 mod plan;
-mod pool;
 mod prepare;
 mod settings;
 mod surface;
@@ -25,6 +24,7 @@ pub use settings::RenderSettings;
 use crate::display_list::DisplayList;
 use crate::error::Result;
 use crate::geom::IntRect;
+use crate::pool;
 use crate::surface::PixmapMut;
 
 /// Working memory that outlives a frame: after the first, drawing alike frames allocates nothing.

@@ -3,33 +3,33 @@
 use std::sync::Arc;
 
 use super::{RenderSettings, Renderer};
-use crate::display_list::{Command, DisplayList, Shadow};
+use crate::color::Color;
+use crate::display_list::{Command, DisplayList, Effect, EffectKind};
 use crate::error::Result;
-use crate::filter::blur;
+use crate::filter::{self, Image, PlacedFilter, Work};
 use crate::geom::{IntRect, Transform};
-use crate::num::lanes::div255;
 use crate::paint::{FilterQuality, Pattern, PreparedPaint, SpreadMode};
 use crate::surface::Pixmap;
 
 /// The pictures that the bands need.
 #[derive(Debug, Default)]
 pub(crate) struct Plan {
-    shadows: Vec<PlannedShadow>,
+    pictures: Vec<PlannedPicture>,
 }
 
-/// A shadow as a picture.
+/// An effect as a picture.
 #[derive(Debug)]
-pub(crate) struct PlannedShadow {
+pub(crate) struct PlannedPicture {
     command: u32,
     pub(crate) paint: PreparedPaint,
     pub(crate) bounds: IntRect,
 }
 
 impl Plan {
-    /// The shadow of command `command`, if it has any visible pixel.
-    pub(crate) fn shadow(&self, command: u32) -> Option<&PlannedShadow> {
-        let index = self.shadows.binary_search_by_key(&command, |shadow| shadow.command).ok()?;
-        self.shadows.get(index)
+    /// The picture of command `command`, if it has any visible pixel.
+    pub(crate) fn picture(&self, command: u32) -> Option<&PlannedPicture> {
+        let index = self.pictures.binary_search_by_key(&command, |picture| picture.command).ok()?;
+        self.pictures.get(index)
     }
 }
 
@@ -38,13 +38,24 @@ pub(super) fn plan(list: &DisplayList, frame: IntRect, settings: RenderSettings)
     let mut plan = Plan::default();
     let mut result = Ok(());
     for (index, command) in list.commands.iter().enumerate() {
-        if let Command::Shadow(shadow) = command {
-            let bounds = shadow.bounds.intersect(frame);
+        if let Command::Effect(effect) = command {
+            let bounds = effect.bounds.intersect(frame);
             if bounds.is_empty() {
                 continue;
             }
-            match picture(shadow, bounds, settings) {
-                Ok(paint) => plan.shadows.push(PlannedShadow { command: index as u32, paint, bounds }),
+            let picture = match &effect.kind {
+                EffectKind::Shadow { offset, deviation, color } => {
+                    shadow(effect, *offset, *deviation, *color, bounds, settings)
+                }
+                EffectKind::Filter { filter, to_device, opacity } => {
+                    filtered(effect, filter, *to_device, *opacity, bounds, settings)
+                }
+            };
+            match picture {
+                Ok(Some((paint, bounds))) => {
+                    plan.pictures.push(PlannedPicture { command: index as u32, paint, bounds })
+                }
+                Ok(None) => {}
                 Err(error) => result = Err(error),
             }
         }
@@ -52,22 +63,61 @@ pub(super) fn plan(list: &DisplayList, frame: IntRect, settings: RenderSettings)
     (plan, result)
 }
 
-/// Draws a shadow's shapes, blurs their alpha and gives it the shadow's colour, in the device pixels `bounds`.
-fn picture(shadow: &Shadow, bounds: IntRect, settings: RenderSettings) -> Result<PreparedPaint> {
-    let mut shapes = Pixmap::new(shadow.extent.width(), shadow.extent.height())?;
-    Renderer::default().render(&shadow.list, &mut shapes.as_mut(), settings)?;
-    let alpha: Vec<u8> = shapes.data().as_chunks::<4>().0.iter().map(|[_, _, _, a]| *a).collect();
-    let (dx, dy) = shadow.offset;
+/// What the effect applies to, drawn.
+fn source(effect: &Effect, settings: RenderSettings) -> Result<Image> {
+    if effect.extent.is_empty() || effect.list.commands.is_empty() {
+        return Ok(Image::empty());
+    }
+    let mut pixmap = Pixmap::new(effect.extent.width(), effect.extent.height())?;
+    Renderer::default().render(&effect.list, &mut pixmap.as_mut(), settings)?;
+    Ok(Image::from_pixmap(pixmap, effect.extent.left, effect.extent.top))
+}
+
+/// Draws a shadow's shapes, blurs their alpha and gives it the shadow's colour.
+fn shadow(
+    effect: &Effect,
+    (dx, dy): (i32, i32),
+    deviation: f32,
+    color: Color,
+    bounds: IntRect,
+    settings: RenderSettings,
+) -> Result<Option<(PreparedPaint, IntRect)>> {
+    let work = Work { threads: settings.threads, level: settings.level };
     let seen = IntRect::from_ltrb(bounds.left - dx, bounds.top - dy, bounds.right - dx, bounds.bottom - dy);
-    let alpha = blur::gaussian(&alpha, shadow.extent, seen, shadow.deviation);
-    let mut pixmap = Pixmap::new(bounds.width(), bounds.height())?;
-    let color = shadow.color.premultiply().map(u32::from);
-    for (pixel, alpha) in pixmap.data_mut().as_chunks_mut::<4>().0.iter_mut().zip(alpha) {
-        *pixel = color.map(|component| div255(component * u32::from(alpha)) as u8);
+    let mut image = filter::gaussian(&source(effect, settings)?, seen, deviation, work)?;
+    filter::tint(&mut image, color, work);
+    Ok(paint(image, Transform::from_translate(dx as f32, dy as f32), 1.0, bounds))
+}
+
+/// Draws a layer and filters it.
+fn filtered(
+    effect: &Effect,
+    filter: &PlacedFilter,
+    to_device: Transform,
+    opacity: f32,
+    bounds: IntRect,
+    settings: RenderSettings,
+) -> Result<Option<(PreparedPaint, IntRect)>> {
+    let work = Work { threads: settings.threads, level: settings.level };
+    let image = filter.run(source(effect, settings)?, work)?;
+    Ok(paint(image, to_device, opacity, bounds))
+}
+
+/// A picture as a paint, and the device pixels within `bounds` that it touches.
+fn paint(image: Image, to_device: Transform, opacity: f32, bounds: IntRect) -> Option<(PreparedPaint, IntRect)> {
+    let place = image.bounds();
+    // Sampled between pixels, its borders fade out over one more.
+    let touched = to_device.map_rect(place.to_rect())?;
+    let touched = if to_device.is_translate() { touched } else { touched.outset(1.0) };
+    let bounds = touched.round_out().intersect(bounds);
+    let pixmap = image.into_pixmap()?;
+    if bounds.is_empty() {
+        return None;
     }
     let mut pattern = Pattern::new(Arc::new(pixmap));
-    pattern.quality = FilterQuality::Nearest;
+    // Pixels on pixels are copied.
+    pattern.quality = FilterQuality::Bilinear;
     (pattern.spread_x, pattern.spread_y) = (SpreadMode::Decal, SpreadMode::Decal);
-    let place = Transform::from_translate(bounds.left as f32, bounds.top as f32);
-    Ok(PreparedPaint::new(&pattern.into(), place, 1.0))
+    let place = to_device.pre_concat(Transform::from_translate(place.left as f32, place.top as f32));
+    Some((PreparedPaint::new(&pattern.into(), place, opacity), bounds))
 }

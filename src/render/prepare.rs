@@ -83,9 +83,9 @@ impl Chunk {
                 Command::BeginMask(bounds) | Command::EndMask(bounds, _) => {
                     self.bins.list(number, bounds.intersect(frame));
                 }
-                Command::Shadow(_) => {
-                    if let Some(shadow) = plan.shadow(number) {
-                        self.bins.list(number, shadow.bounds.intersect(frame));
+                Command::Effect(_) => {
+                    if let Some(picture) = plan.picture(number) {
+                        self.bins.list(number, picture.bounds.intersect(frame));
                     }
                 }
             }

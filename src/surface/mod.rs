@@ -5,4 +5,5 @@ mod mask;
 mod pixmap;
 
 pub use mask::{Mask, MaskKind};
+pub(crate) use pixmap::allocate;
 pub use pixmap::{Limits, Pixmap, PixmapMut, PixmapRef};

@@ -38,7 +38,11 @@ fn content(group: &usvg::Group) -> Option<Rect> {
     let mut boxes = group.children().iter().map(|node| {
         let bounds = convert::bounds(node.stroke_bounding_box());
         match node {
-            usvg::Node::Group(group) => convert::transform(group.transform()).map_rect(bounds),
+            // A filter may draw further out than what it applies to.
+            usvg::Node::Group(group) => {
+                let layer = convert::rect(group.layer_bounding_box());
+                convert::transform(group.transform()).map_rect(bounds.union(layer))
+            }
             _ => Some(bounds),
         }
     });
@@ -99,6 +103,7 @@ pub(super) fn apply(outlines: &[Outline<'_>], settings: &Settings, canvas: &mut 
             Some((path, fill)) => {
                 canvas.transform(*transform);
                 let antialias = shape::antialias(path, settings);
+                shape::nudge(antialias, canvas);
                 match convert::rectangle(path.data()) {
                     Some(rect) => canvas.clip_rect(rect, antialias),
                     None => canvas.clip_path(&convert::path(path.data()), convert::fill_rule(fill.rule()), antialias),
@@ -121,7 +126,10 @@ impl Renderer<'_> {
             usvg::Node::Path(path) => {
                 if let Some((path, fill)) = visible_fill(path) {
                     let paint = Paint::from(Color::BLACK).with_antialias(shape::antialias(path, self.settings));
+                    let transform = canvas.current_transform();
+                    shape::nudge(paint.antialias, canvas);
                     canvas.fill_path(&convert::path(path.data()), convert::fill_rule(fill.rule()), paint);
+                    canvas.set_transform(transform);
                 }
                 return;
             }

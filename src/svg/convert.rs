@@ -23,16 +23,40 @@ pub(super) fn bounds(r: usvg::Rect) -> Rect {
 pub(super) fn path(path: &usvg::tiny_skia_path::Path) -> Path {
     let point = |p: usvg::tiny_skia_path::Point| Point::new(p.x, p.y);
     let mut out = Path::new();
+    let mut last = Point::ZERO;
     for segment in path.segments() {
         match segment {
             PathSegment::MoveTo(p) => out.move_to(point(p)),
             PathSegment::LineTo(p) => out.line_to(point(p)),
             PathSegment::QuadTo(c, p) => out.quad_to(point(c), point(p)),
-            PathSegment::CubicTo(c1, c2, p) => out.cubic_to(point(c1), point(c2), point(p)),
+            PathSegment::CubicTo(c1, c2, p) => {
+                let (c1, c2) = clear_ends(last, point(c1), point(c2), point(p));
+                out.cubic_to(c1, c2, point(p))
+            }
             PathSegment::Close => out.close(),
         };
+        if let PathSegment::MoveTo(p)
+        | PathSegment::LineTo(p)
+        | PathSegment::QuadTo(_, p)
+        | PathSegment::CubicTo(.., p) = segment
+        {
+            last = point(p);
+        }
     }
     out
+}
+
+/// A cubic's control points; one that is only rounding away from its end lies on it: a stroke would take its direction
+/// from nothing else.
+fn clear_ends(start: Point, c1: Point, c2: Point, end: Point) -> (Point, Point) {
+    let distance = |a: Point, b: Point| (a.x - b.x).abs() + (a.y - b.y).abs();
+    let length = distance(start, end);
+    // Both so near make a line of it, to a five-thousandth of its length.
+    if distance(start, c1) < length * 4e-4 && distance(end, c2) < length * 4e-4 {
+        return (start, end);
+    }
+    let least = length * 1e-5;
+    (if distance(start, c1) < least { start } else { c1 }, if distance(end, c2) < least { end } else { c2 })
 }
 
 /// The rectangle that a path is, with edges along the axes: usvg makes paths of them all.

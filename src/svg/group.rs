@@ -4,9 +4,8 @@ use super::clip::{self, Outline};
 use super::convert;
 use super::render::{Renderer, Step};
 use super::shape::{self, Effects};
-use super::warning::WarningKind;
 use crate::blend::BlendMode;
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, LayerOptions};
 use crate::geom::{Rect, Transform};
 use crate::style::Antialias;
 
@@ -17,9 +16,6 @@ pub(super) fn draw<'t>(
     steps: &mut Vec<Step<'t>>,
     canvas: &mut Canvas<'_>,
 ) {
-    if !group.filters().is_empty() {
-        renderer.warnings.add(WarningKind::Filter, group.id());
-    }
     if group.should_isolate() {
         match single(group) {
             Some(single) => single.draw(renderer, canvas),
@@ -53,12 +49,20 @@ fn begin_layer<'t>(
         clip::apply(outlines, renderer.settings, canvas);
     }
     bound(group, canvas);
-    canvas.push_layer(group.opacity().get(), convert::blend_mode(group.blend_mode()));
-    steps.push(Step::PopLayer);
-    steps.extend(group.mask().map(Step::Mask));
-    if outlines.is_none() {
-        steps.extend(group.clip_path().map(Step::Clip));
+    let mut options = LayerOptions::default()
+        .with_opacity(group.opacity().get())
+        .with_blend_mode(convert::blend_mode(group.blend_mode()));
+    // Clips and masks apply to what filters made.
+    if group.filters().is_empty() || group.mask().is_some() || outlines.is_none() {
+        canvas.push_layer_with(&options);
+        options = LayerOptions::default();
+        steps.push(Step::PopLayer);
+        steps.extend(group.mask().map(Step::Mask));
+        if outlines.is_none() {
+            steps.extend(group.clip_path().map(Step::Clip));
+        }
     }
+    renderer.push_filters(group, options, steps, canvas);
     steps.push(Step::Children(group, 0));
 }
 
@@ -106,7 +110,7 @@ struct Single<'t> {
 }
 
 fn single(group: &usvg::Group) -> Option<Single<'_>> {
-    if group.mask().is_some() {
+    if group.mask().is_some() || !group.filters().is_empty() {
         return None;
     }
     let mut groups = Vec::new();

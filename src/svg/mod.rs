@@ -6,14 +6,17 @@
 
 mod clip;
 mod convert;
+mod filter;
 mod group;
 mod image;
+mod links;
 mod pattern;
 mod read;
 mod render;
 mod shape;
 mod warning;
 
+pub use links::image_resolver;
 pub use read::{parse, unpack};
 pub use usvg;
 pub use warning::{Warning, WarningKind};

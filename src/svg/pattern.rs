@@ -17,10 +17,6 @@ const MAX_TILE_PIXELS: f64 = (1_u32 << 25) as f64;
 /// The longest side of a tile.
 const MAX_TILE_SIDE: f64 = 32_767.0;
 
-/// How many patterns may be drawn inside each other: unlike groups, each has a canvas of its own and takes
-/// some of the thread's stack.
-const MAX_PATTERN_DEPTH: u32 = 16;
-
 /// A tile that was drawn, and what it was drawn for.
 pub(super) struct Tile {
     pattern: Arc<usvg::Pattern>,
@@ -38,12 +34,26 @@ struct Grid {
 }
 
 /// The whole pixels of a tile's side, and the length that they show. The two differ by the rounding of a side of
-/// ten pixels or more: the tile is then repeated by whole pixels, as resvg does, and none is resampled. A shorter
-/// side, whose period this would change by more than a twentieth, is stretched to whole pixels instead.
+/// two pixels or more: the tile is then repeated by whole pixels, as resvg does, and none is resampled. A shorter
+/// side, whose period this might change by half, is stretched to whole pixels instead.
 fn whole(side: f64) -> (u32, f64) {
     // At most MAX_TILE_SIDE.
     let pixels = side.round().max(1.0);
-    (pixels as u32, if side < 10.0 { pixels } else { side })
+    (pixels as u32, if side < 2.0 { pixels } else { side })
+}
+
+/// How a tile's pixels are sampled.
+fn quality(to_device: Transform, grid: Grid) -> FilterQuality {
+    let near = |a: f32, b: f32| (a - b).abs() < 1e-5 * b;
+    if !to_device.is_scale_translate() {
+        // Turned pixels lie between the device's, where bilinear sampling would soften lines and text.
+        FilterQuality::Bicubic
+    } else if near(grid.scale.0, to_device.sx) && near(grid.scale.1, to_device.sy) {
+        // As large as the device's, they are moved to them, by half a pixel at most.
+        FilterQuality::Nearest
+    } else {
+        FilterQuality::Bilinear
+    }
 }
 
 impl Renderer<'_> {
@@ -58,8 +68,7 @@ impl Renderer<'_> {
             transform: own
                 .pre_concat(Transform::from_translate(rect.left, rect.top))
                 .pre_concat(Transform::from_scale(1.0 / grid.scale.0, 1.0 / grid.scale.1)),
-            // Turned pixels lie between the device's, where bilinear sampling would soften lines and text.
-            quality: if to_device.is_scale_translate() { FilterQuality::Bilinear } else { FilterQuality::Bicubic },
+            quality: quality(to_device, grid),
             ..Pattern::new(image)
         })
     }
@@ -96,24 +105,20 @@ impl Renderer<'_> {
         if let Some(tile) = self.tiles.iter().find(|tile| tile.grid == grid && Arc::ptr_eq(&tile.pattern, pattern)) {
             return Some(tile.image.clone());
         }
-        if self.pattern_depth >= MAX_PATTERN_DEPTH {
-            self.warnings.add(WarningKind::PatternDepth, pattern.id());
-            return None;
-        }
-        if !self.count_layer() {
+        if !self.enter_canvas(pattern.id()) {
             return None;
         }
         let Grid { size, scale } = grid;
         let fits = self.count_pixels(size.0, size.1);
         let canvas = fits.then(|| Canvas::with_settings(size.0, size.1, settings).ok());
         let Some(mut canvas) = canvas.flatten() else {
+            self.leave_canvas();
             self.warnings.add(WarningKind::PatternSize, pattern.id());
             return None;
         };
         canvas.transform(Transform::from_scale(scale.0, scale.1));
-        self.pattern_depth += 1;
         self.draw_children(pattern.root(), &mut canvas);
-        self.pattern_depth -= 1;
+        self.leave_canvas();
         let image = Arc::new(canvas.into_pixmap());
         self.tiles.push(Tile { pattern: pattern.clone(), grid, image: image.clone() });
         Some(image)

@@ -19,6 +19,9 @@ const MAX_ELEMENTS: u32 = 1 << 24;
 /// ten masks of ten masks … would otherwise take for ever.
 const MAX_LAYERS: u32 = 1 << 16;
 
+/// How many patterns and filters' pictures may be drawn inside each other.
+const MAX_CANVAS_DEPTH: u32 = 16;
+
 /// The most pixels of all tiles, and of all embedded pictures, that one call keeps: 1 GiB.
 const MAX_PIXELS: u64 = 1 << 28;
 
@@ -47,8 +50,8 @@ pub(super) struct Renderer<'s> {
     pub(super) tiles: Vec<Tile>,
     /// Embedded pictures decoded so far.
     pub(super) pictures: Vec<Picture>,
-    /// How many patterns are being drawn inside each other.
-    pub(super) pattern_depth: u32,
+    /// How many canvases of patterns and filters' pictures are being drawn inside each other.
+    canvas_depth: u32,
     elements: u32,
     layers: u32,
     pixels: u64,
@@ -61,7 +64,7 @@ impl<'s> Renderer<'s> {
             warnings: Warnings::default(),
             tiles: Vec::new(),
             pictures: Vec::new(),
-            pattern_depth: 0,
+            canvas_depth: 0,
             elements: 0,
             layers: 0,
             pixels: 0,
@@ -149,6 +152,22 @@ impl<'s> Renderer<'s> {
         steps.push(Step::PopMask);
         steps.push(Step::Restore);
         true
+    }
+
+    /// Whether one more canvas may be begun inside those that there are: unlike groups, each takes some of the
+    /// thread's stack. If so, [`leave_canvas`](Self::leave_canvas) ends it.
+    pub(super) fn enter_canvas(&mut self, id: &str) -> bool {
+        if self.canvas_depth >= MAX_CANVAS_DEPTH {
+            self.warnings.add(WarningKind::PatternDepth, id);
+            return false;
+        }
+        let counts = self.count_layer();
+        self.canvas_depth += u32::from(counts);
+        counts
+    }
+
+    pub(super) fn leave_canvas(&mut self) {
+        self.canvas_depth = self.canvas_depth.saturating_sub(1);
     }
 
     /// Whether one more element may be drawn.

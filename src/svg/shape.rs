@@ -6,7 +6,7 @@ use crate::blend::BlendMode;
 use crate::canvas::Canvas;
 use crate::color::Color;
 use crate::display_list::Paint;
-use crate::geom::Point;
+use crate::geom::{Point, Transform};
 use crate::paint::{GradientStop, LinearGradient, RadialGradient, Shader};
 use crate::style::Antialias;
 
@@ -27,6 +27,21 @@ pub(super) fn paints_once(path: &usvg::Path) -> bool {
     path.fill().is_none() || path.stroke().is_none()
 }
 
+/// Whether a stroke of the path covers itself: a line there and back. Coverage summed edge by edge would count it twice.
+fn doubles_back(path: &usvg::Path) -> bool {
+    use usvg::tiny_skia_path::PathVerb::{Close, Line, Move};
+    path.data().verbs().windows(3).any(|verbs| verbs == [Move, Line, Close])
+}
+
+/// Without antialiasing, a pixel whose centre lies on an edge belongs to what is above it or to its left: the canvas has it the
+/// other way round, but this is what browsers and resvg draw, and what lies on edges are mostly lines that ask to be crisp.
+pub(super) fn nudge(antialias: Antialias, canvas: &mut Canvas<'_>) {
+    if antialias == Antialias::None {
+        let least = 1.0 / 256.0;
+        canvas.set_transform(canvas.current_transform().post_concat(Transform::from_translate(least, least)));
+    }
+}
+
 /// How the path is antialiased.
 pub(super) fn antialias(path: &usvg::Path, settings: &Settings) -> Antialias {
     if path.rendering_mode().use_shape_antialiasing() { settings.antialias } else { Antialias::None }
@@ -38,6 +53,8 @@ impl Renderer<'_> {
             return;
         }
         let outline = convert::path(path.data());
+        let transform = canvas.current_transform();
+        nudge(antialias(path, self.settings), canvas);
         let fill = |renderer: &mut Self, canvas: &mut Canvas<'_>| {
             if let Some(fill) = path.fill()
                 && let Some(paint) = renderer.paint(fill.paint(), fill.opacity(), path, effects, canvas)
@@ -47,8 +64,11 @@ impl Renderer<'_> {
         };
         let stroke = |renderer: &mut Self, canvas: &mut Canvas<'_>| {
             if let Some(stroke) = path.stroke()
-                && let Some(paint) = renderer.paint(stroke.paint(), stroke.opacity(), path, effects, canvas)
+                && let Some(mut paint) = renderer.paint(stroke.paint(), stroke.opacity(), path, effects, canvas)
             {
+                if paint.antialias == Antialias::Analytic && doubles_back(path) {
+                    paint.antialias = Antialias::Exact;
+                }
                 canvas.stroke_path(&outline, &convert::stroke(stroke), paint);
             }
         };
@@ -62,6 +82,7 @@ impl Renderer<'_> {
                 fill(self, canvas);
             }
         }
+        canvas.set_transform(transform);
     }
 
     fn paint(

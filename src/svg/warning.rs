@@ -17,11 +17,11 @@ pub struct Warning {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum WarningKind {
-    /// A filter: what it applies to is drawn without it.
-    Filter,
+    /// A filter whose picture is too large or has no memory: the picture is left out.
+    FilterSize,
     /// An embedded picture that cannot be decoded, and why: it is left out.
     Image(String),
-    /// A pattern inside patterns inside patterns, beyond the limit: what it paints is left out.
+    /// A pattern, or a filter's picture, inside patterns and filters' pictures beyond the limit: it is left out.
     PatternDepth,
     /// A pattern whose tile is too large or has no memory: it is drawn at a lower resolution or left out.
     PatternSize,
@@ -37,10 +37,10 @@ impl fmt::Display for Warning {
             if self.id.is_empty() { Ok(()) } else { write!(f, " '{}'", self.id.escape_debug()) }
         };
         match &self.kind {
-            WarningKind::Filter => {
-                f.write_str("element")?;
+            WarningKind::FilterSize => {
+                f.write_str("filter")?;
                 id(f)?;
-                f.write_str(" is drawn without its filter: filters are not drawn yet")
+                f.write_str(" has too large a picture: it is left out")
             }
             WarningKind::Image(reason) => {
                 f.write_str("image")?;
@@ -48,9 +48,9 @@ impl fmt::Display for Warning {
                 write!(f, " is left out: {}", reason.escape_debug())
             }
             WarningKind::PatternDepth => {
-                f.write_str("pattern")?;
+                f.write_str("pattern or filter")?;
                 id(f)?;
-                f.write_str(" is left out: patterns are nested too deeply")
+                f.write_str(" is left out: they are nested too deeply")
             }
             WarningKind::PatternSize => {
                 f.write_str("pattern")?;
@@ -89,15 +89,15 @@ mod tests {
     #[test]
     fn a_warning_comes_once_and_is_one_line() {
         let mut warnings = Warnings::default();
-        warnings.add(WarningKind::Filter, "a\nb");
-        warnings.add(WarningKind::Filter, "a\nb");
-        warnings.add(WarningKind::Filter, "");
+        warnings.add(WarningKind::PatternSize, "a\nb");
+        warnings.add(WarningKind::PatternSize, "a\nb");
+        warnings.add(WarningKind::PatternSize, "");
         let lines: Vec<_> = warnings.into_vec().iter().map(ToString::to_string).collect();
         assert_eq!(
             lines,
             [
-                "element 'a\\nb' is drawn without its filter: filters are not drawn yet",
-                "element is drawn without its filter: filters are not drawn yet"
+                "pattern 'a\\nb' has too large a tile: it is drawn at a lower resolution or left out",
+                "pattern has too large a tile: it is drawn at a lower resolution or left out"
             ]
         );
     }

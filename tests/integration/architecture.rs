@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// From the ground up. Modules of one floor do not use each other.
 const FLOORS: [&[&str]; 10] = [
-    &["num", "error"],
+    &["num", "error", "pool"],
     &["geom"],
     &["color", "style"],
     &["path", "surface"],

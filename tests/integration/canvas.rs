@@ -468,12 +468,8 @@ fn a_blurred_shadow_is_the_shapes_convolution_with_a_gaussian() {
             canvas.set_shadow(None);
             canvas.clear_rect(source);
         });
-        // From 2 on three boxes of the widths that SVG gives stand for the Gaussian, with a deviation of their own: a box
-        // of n pixels has the variance (n² − 1) / 12.
-        let size = (f64::from(deviation) * 3.0 * (2.0 * std::f64::consts::PI).sqrt() / 4.0 + 0.5).floor();
-        let third = if size % 2.0 == 0.0 { size + 1.0 } else { size };
-        let boxes = ((2.0 * (size * size - 1.0) + third * third - 1.0) / 12.0).sqrt();
-        let (sigma, tolerance) = if deviation < 2.0 { (f64::from(deviation), 1.6) } else { (boxes, 4.0) };
+        // From 3 on three boxes stand for the Gaussian.
+        let (sigma, tolerance) = (f64::from(deviation), if deviation < 3.0 { 1.6 } else { 4.0 });
         let weight = |d: i32| (-f64::from(d * d) / (2.0 * sigma * sigma)).exp();
         let total: f64 = (-40..=40).map(weight).sum();
         let along = |at: i32, low: i32, high: i32| (low..high).map(|p| weight(at - p)).sum::<f64>() / total;

@@ -20,5 +20,7 @@ mod reference;
 mod seeds_lines;
 mod seeds_polygons;
 mod seeds_sampling;
+#[cfg(all(feature = "text", feature = "codec"))]
+mod suite;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod svg;

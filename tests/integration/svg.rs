@@ -341,17 +341,60 @@ fn a_nested_svg_image_is_clipped_to_its_size() {
 }
 
 #[test]
-fn a_filter_is_named_by_its_element_once_and_its_content_drawn() {
-    let (pixmap, warnings) = draw(
-        "<filter id='f'><feOffset dx='4'/></filter>\
-         <g filter='url(#f)' id='moved'><rect width='4' height='8' fill='red'/></g>\
-         <g filter='url(#f)'><rect width='1' height='1' fill='red'/></g><g filter='url(#f)'><rect width='2' height='1'/></g>",
+fn filters_apply_before_clips_and_masks() {
+    let move_by_4 = "<filter id='f' filterUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'>\
+                     <feOffset dx='4'/></filter>";
+    let pixmap = whole(&format!(
+        "{move_by_4}<clipPath id='c'><rect x='5' width='3' height='8'/></clipPath>\
+         <g clip-path='url(#c)'><g filter='url(#f)'><rect width='4' height='4' fill='red'/></g></g>\
+         <g filter='url(#f)' clip-path='url(#c)'><rect y='4' width='4' height='4' fill='lime'/></g>"
+    ));
+    assert_pixels(&pixmap, [(0, 0, CLEAR), (4, 0, CLEAR), (5, 0, RED), (4, 4, CLEAR), (7, 7, GREEN)]);
+    let pixmap = whole(&format!(
+        "{move_by_4}<mask id='m' maskUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'><path d='M6 0h2v8h-2z' fill='white'/></mask>\
+         <g filter='url(#f)' mask='url(#m)'><rect width='4' height='8' fill='red'/></g>"
+    ));
+    assert_pixels(&pixmap, [(1, 1, CLEAR), (5, 5, CLEAR), (6, 5, RED)]);
+}
+
+#[test]
+fn a_filtered_group_fades_as_one() {
+    let pixmap = whole(
+        "<filter id='f'><feMerge><feMergeNode/></feMerge></filter><g filter='url(#f)' opacity='0.5'>\
+         <rect width='8' height='8' fill='red'/><rect width='8' height='4' fill='lime'/></g>",
     );
-    assert_pixels(&pixmap, [(2, 2, RED)]);
-    assert_eq!(
-        warnings.iter().map(|w| (&w.kind, w.id.as_str())).collect::<Vec<_>>(),
-        [(&WarningKind::Filter, "moved"), (&WarningKind::Filter, "")]
+    assert_pixels(&pixmap, [(2, 2, [0, 128, 0, 128]), (2, 6, [128, 0, 0, 128])]);
+}
+
+#[test]
+fn a_filter_turns_with_its_element() {
+    // To the right is down, under a quarter turn.
+    let pixmap = whole(
+        "<filter id='f' filterUnits='userSpaceOnUse' x='0' y='-8' width='8' height='8'><feOffset dx='4'/></filter>\
+         <g transform='rotate(90)'><g filter='url(#f)'><rect y='-8' width='2' height='8' fill='red'/></g></g>",
     );
+    assert_pixels(&pixmap, [(4, 1, CLEAR), (4, 3, CLEAR), (0, 4, RED), (7, 5, RED), (4, 6, CLEAR)]);
+}
+
+#[test]
+fn filters_in_filters_and_pictures_in_filters_are_drawn() {
+    let pixmap = whole(
+        "<filter id='f' filterUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'><feOffset dx='2'/></filter>\
+         <rect id='r' width='2' height='2' fill='lime'/>\
+         <filter id='i' filterUnits='userSpaceOnUse' x='0' y='0' width='8' height='8'><feImage href='#r'/><feOffset dy='6'/></filter>\
+         <g filter='url(#f)'><g filter='url(#f)'><rect width='2' height='2' fill='red'/></g></g>\
+         <rect width='1' height='1' filter='url(#i)'/>",
+    );
+    assert_pixels(&pixmap, [(1, 1, GREEN), (3, 1, CLEAR), (4, 1, RED), (5, 1, RED), (6, 1, CLEAR), (1, 7, GREEN)]);
+}
+
+#[test]
+fn an_element_without_area_has_what_its_filter_paints() {
+    let pixmap = whole(
+        "<filter id='f' filterUnits='userSpaceOnUse' x='2' y='2' width='4' height='4'><feFlood flood-color='red'/></filter>\
+         <g filter='url(#f)'/>",
+    );
+    assert_pixels(&pixmap, [(1, 1, CLEAR), (2, 2, RED), (5, 5, RED), (6, 6, CLEAR)]);
 }
 
 #[test]

@@ -3,7 +3,6 @@
 mod args;
 mod completions;
 mod fonts;
-mod images;
 mod info;
 mod json;
 mod man;

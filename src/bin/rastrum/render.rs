@@ -15,7 +15,6 @@ use rastrum::{Canvas, Error, Pixmap, RenderSettings, Transform};
 
 use crate::args::RenderArguments;
 use crate::fonts::Fonts;
-use crate::images;
 use crate::notes;
 use crate::plan::{self, Job};
 use crate::report::{self, Failure, Outcome};
@@ -155,7 +154,7 @@ fn options<'f>(job: &Job, arguments: &RenderArguments, fonts: &'f Fonts<'_>) -> 
         resources_dir,
         dpi: arguments.dpi as f32,
         font_resolver: fonts.resolver(),
-        image_href_resolver: images::resolver(),
+        image_href_resolver: svg::image_resolver(notes::add),
         ..usvg::Options::default()
     };
     // Only a drawing without a size of its own asks for this one.

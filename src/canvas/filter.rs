@@ -1,0 +1,217 @@
+//! Layers with options: filters.
+
+use std::sync::Arc;
+
+use super::Canvas;
+use super::state::{FilterLayer, OpenLayerKind};
+use crate::blend::BlendMode;
+use crate::display_list::{ClipId, DisplayList};
+use crate::filter::{Filter, Grid, PlacedFilter};
+use crate::geom::{IntRect, Rect, Transform};
+
+/// How a layer is drawn.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LayerOptions {
+    /// What its alpha is multiplied by, in 0 ..= 1. The default is 1.
+    pub opacity: f32,
+    /// How it meets what is there. The default is [`BlendMode::SourceOver`].
+    pub blend_mode: BlendMode,
+    /// What becomes of it before it is drawn. The default is nothing.
+    pub filter: Option<Arc<Filter>>,
+    /// The part of user space that will be drawn on it, if that is known: a filter then need not look at the rest.
+    /// What is drawn outside may be cut off.
+    pub content: Option<Rect>,
+}
+
+impl Default for LayerOptions {
+    fn default() -> Self {
+        Self { opacity: 1.0, blend_mode: BlendMode::SourceOver, filter: None, content: None }
+    }
+}
+
+impl LayerOptions {
+    /// The same with the given opacity.
+    #[must_use]
+    pub fn with_opacity(self, opacity: f32) -> Self {
+        Self { opacity, ..self }
+    }
+
+    /// The same with the given blend mode.
+    #[must_use]
+    pub fn with_blend_mode(self, blend_mode: BlendMode) -> Self {
+        Self { blend_mode, ..self }
+    }
+
+    /// The same with the given filter.
+    #[must_use]
+    pub fn with_filter(self, filter: impl Into<Arc<Filter>>) -> Self {
+        Self { filter: Some(filter.into()), ..self }
+    }
+
+    /// The same with the given bounds of what will be drawn, in user space.
+    #[must_use]
+    pub fn with_content(self, content: Rect) -> Self {
+        Self { content: Some(content), ..self }
+    }
+}
+
+/// How many layers with filters may lie in each other: each is drawn by a renderer of its own.
+const MAX_DEPTH: usize = 64;
+
+/// How far a filter looks beyond what is visible, in widths and heights of the canvas. Blurs wider than that draw on less
+/// than they should.
+const SURROUNDINGS: i32 = 2;
+
+/// The longest side of a filter's pictures.
+const MAX_SIDE: i32 = 32_767;
+
+/// Pictures of effects are made before anything is drawn. When so many bytes of them have come together, what
+/// was recorded is drawn, so that they need not be kept.
+const MAX_PICTURES: u64 = 64 << 20;
+
+impl Canvas<'_> {
+    /// Starts a layer with options, as [`push_layer`](Self::push_layer) does; [`pop_layer`](Self::pop_layer) ends it.
+    ///
+    /// A filter works along the axes of the current user space, at the resolution that the transform gives it: under a
+    /// rotation or skew its result is turned with the rest of the drawing, and pixels of the device
+    /// ([`draw_pixel_line`](Self::draw_pixel_line) and the like) are those of the filter. Parts of the canvas far outside of
+    /// what is visible (two widths or heights of the canvas) do not exist for it. Where layers with filters lie in each
+    /// other more than 64 deep, the innermost are drawn without them.
+    pub fn push_layer_with(&mut self, options: &LayerOptions) {
+        let filter_depth = self.layers.iter().filter(|layer| matches!(layer.kind, OpenLayerKind::Filter(_))).count();
+        match &options.filter {
+            Some(filter) if filter_depth < MAX_DEPTH => self.push_filter(filter, options),
+            _ => self.push_layer(options.opacity, options.blend_mode),
+        }
+    }
+
+    fn push_filter(&mut self, filter: &Arc<Filter>, options: &LayerOptions) {
+        let visible = self.state.bounds;
+        let Some(FilterSpace { to_grid, to_outer, grid, seen, limit }) = self.filter_space() else {
+            // Nothing of it can be seen.
+            let outer = self.state.bounds;
+            self.state.bounds = IntRect::EMPTY;
+            self.push_layer(options.opacity, options.blend_mode);
+            if let Some(layer) = self.layers.last_mut() {
+                layer.outer.bounds = outer;
+            }
+            return;
+        };
+        let placed = PlacedFilter::new(Arc::clone(filter), Grid::new(grid), seen, limit);
+        let mut extent = placed.source();
+        if let Some(content) = options.content {
+            // Soft edges, and a pixel against rounding.
+            let content = grid.map_rect(content).map(|content| content.outset(2.0).round_out());
+            extent = extent.intersect(content.unwrap_or(IntRect::EMPTY));
+        }
+        let bounds = to_outer.map_rect(placed.result().to_rect()).map_or(IntRect::EMPTY, |result| {
+            let faded = if to_outer.is_translate() { result } else { result.outset(1.0) };
+            faded.round_out().intersect(visible)
+        });
+        let layer = FilterLayer {
+            outer_list: std::mem::take(&mut self.list),
+            filter: placed,
+            to_outer,
+            extent,
+            limit: IntRect::from_ltrb(
+                limit.left - extent.left,
+                limit.top - extent.top,
+                limit.right - extent.left,
+                limit.bottom - extent.top,
+            ),
+            opacity: options.opacity,
+            blend_mode: options.blend_mode,
+            clip: self.state.clip,
+            bounds,
+        };
+        self.open_layer(OpenLayerKind::Filter(Box::new(layer)));
+        self.list = DisplayList::default();
+        let shift = Transform::from_translate(-(extent.left as f32), -(extent.top as f32));
+        self.state.to_list = self.state.to_list.post_concat(to_grid).post_concat(shift);
+        self.state.bounds = IntRect::from_xywh(0, 0, extent.width(), extent.height());
+        self.state.clip = ClipId::NONE;
+        self.state.shadow = None;
+    }
+
+    /// The pixels on which a filter would work in a layer begun here; `None` if nothing of it can be seen.
+    pub(crate) fn filter_space(&self) -> Option<FilterSpace> {
+        let visible = self.state.bounds;
+        let Axes { to_grid, to_outer, grid } = Axes::new(self.state.to_pixels()).filter(|_| !visible.is_empty())?;
+        let map = |rect: IntRect| to_grid.map_rect(rect.to_rect()).map_or(IntRect::EMPTY, |rect| rect.round_out());
+        let seen = map(visible);
+        let margin = |side: u32, own: u32| {
+            (side as i32).saturating_mul(SURROUNDINGS).min((MAX_SIDE - own.min(MAX_SIDE as u32) as i32) / 2)
+        };
+        let (across, down) = (margin(self.width(), seen.width()), margin(self.height(), seen.height()));
+        let mut limit =
+            IntRect::from_ltrb(seen.left - across, seen.top - down, seen.right + across, seen.bottom + down);
+        // The surroundings of surroundings would have no end.
+        if let Some(outer) = self.layers.iter().rev().find_map(|layer| match &layer.kind {
+            OpenLayerKind::Filter(layer) => Some(layer.limit),
+            _ => None,
+        }) {
+            limit = limit.intersect(map(outer));
+        }
+        Some(FilterSpace { to_grid, to_outer, grid, seen, limit })
+    }
+
+    /// Notes that pictures of so many bytes were recorded, and draws them when they are too many.
+    pub(super) fn count_pictures(&mut self, bytes: u64) {
+        self.pictures = self.pictures.saturating_add(bytes);
+        if self.pictures > MAX_PICTURES && self.layers.is_empty() {
+            self.failed = self.flush().err();
+        }
+    }
+}
+
+/// Where a filter works.
+pub(crate) struct FilterSpace {
+    to_grid: Transform,
+    to_outer: Transform,
+    /// From user space to the filter's pixels: positive scales and a move.
+    pub(crate) grid: Transform,
+    /// The pixels that can be seen.
+    seen: IntRect,
+    /// The pixels outside of which nothing is computed.
+    pub(crate) limit: IntRect,
+}
+
+/// A filter's own pixels: along the axes of user space, as fine as the device's.
+struct Axes {
+    /// From the recording's pixels to the filter's.
+    to_grid: Transform,
+    /// And back: without scales.
+    to_outer: Transform,
+    /// From user space to the filter's pixels: scales and a move.
+    grid: Transform,
+}
+
+impl Axes {
+    /// The axes of a transform from user space to pixels; `None` if it has no inverse or none that is finite.
+    fn new(transform: Transform) -> Option<Self> {
+        if !transform.is_finite() || transform.is_singular() {
+            return None;
+        }
+        if transform.is_scale_translate() && transform.sx > 0.0 && transform.sy > 0.0 {
+            return Some(Self { to_grid: Transform::IDENTITY, to_outer: Transform::IDENTITY, grid: transform });
+        }
+        let length = |x: f32, y: f32| {
+            let (x, y) = (f64::from(x), f64::from(y));
+            (x * x + y * y).sqrt() as f32
+        };
+        let scale = (length(transform.sx, transform.ky), length(transform.kx, transform.sy));
+        let to_outer = Transform::from_row(
+            transform.sx / scale.0,
+            transform.ky / scale.0,
+            transform.kx / scale.1,
+            transform.sy / scale.1,
+            0.0,
+            0.0,
+        );
+        let to_grid = to_outer.invert()?;
+        let origin = to_grid.pre_concat(transform);
+        let grid = Transform::from_row(scale.0, 0.0, 0.0, scale.1, origin.tx, origin.ty);
+        grid.is_finite().then_some(Self { to_grid, to_outer, grid })
+    }
+}

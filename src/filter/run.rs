@@ -1,0 +1,538 @@
+//! A filter at work: which pixels each primitive has to give, then the pixels.
+
+use std::sync::Arc;
+
+use super::blur::{Blur, blur};
+use super::color_matrix::color_matrix;
+use super::component_transfer::component_transfer;
+use super::composite::{blend, composite, merge};
+use super::convolve::{EdgeMode, convolve};
+use super::displacement::displace;
+use super::drop_shadow::{DropShadow, drop_shadow};
+use super::flood::flood;
+use super::graph::{ColorSpace, Filter, Input, Kind, Primitive};
+use super::image::{Image, Work, grown, moved, union};
+use super::lighting::{self, Map};
+use super::morphology::morphology;
+use super::offset::{offset, whole_pixels};
+use super::picture::picture;
+use super::space::{color_in, convert};
+use super::tile::tile;
+use super::turbulence::turbulence;
+use crate::error::Result;
+use crate::geom::{IntRect, Rect, Transform};
+
+/// A filter on a grid of pixels, with what is wanted of every primitive.
+#[derive(Clone, Debug)]
+pub(crate) struct PlacedFilter {
+    filter: Arc<Filter>,
+    grid: Grid,
+    /// The pixels of the filter's region.
+    region: IntRect,
+    steps: Vec<Step>,
+    /// The pixels of the source graphic that matter.
+    source: IntRect,
+}
+
+/// From user space to pixels: a scale and a move.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grid {
+    scale: (f32, f32),
+    origin: (f32, f32),
+}
+
+impl Grid {
+    /// The grid of a transform that neither turns nor skews; the scales are positive.
+    pub(crate) fn new(transform: Transform) -> Self {
+        Self { scale: (transform.sx, transform.sy), origin: (transform.tx, transform.ty) }
+    }
+
+    /// The whole pixels of a rectangle in user space. As SVG renderers have it, width and height are rounded up for
+    /// themselves, and at least a pixel.
+    pub(crate) fn pixels(&self, rect: Rect) -> IntRect {
+        let rect = rect.normalized();
+        let left = rect.left * self.scale.0 + self.origin.0;
+        let top = rect.top * self.scale.1 + self.origin.1;
+        let right = rect.right * self.scale.0 + self.origin.0;
+        let bottom = rect.bottom * self.scale.1 + self.origin.1;
+        if !Rect::from_ltrb(left, top, right, bottom).is_finite() {
+            return IntRect::EMPTY;
+        }
+        let most = 1e9;
+        let length = |v: f32| v.ceil().clamp(1.0, most) as u32;
+        let start = |v: f32| v.floor().clamp(-most, most) as i32;
+        IntRect::from_xywh(start(left), start(top), length(right - left), length(bottom - top))
+    }
+
+    fn map(&self) -> Map {
+        Map { scale: self.scale, origin: self.origin }
+    }
+
+    fn rect(&self, rect: Rect) -> Rect {
+        Rect::from_ltrb(
+            rect.left * self.scale.0 + self.origin.0,
+            rect.top * self.scale.1 + self.origin.1,
+            rect.right * self.scale.0 + self.origin.0,
+            rect.bottom * self.scale.1 + self.origin.1,
+        )
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Step {
+    /// The pixels outside of which the result is transparent; what a tile is.
+    subregion: IntRect,
+    /// The pixels of the result that later steps ask for.
+    wanted: IntRect,
+}
+
+impl PlacedFilter {
+    /// Places a filter. `visible` is what of its result can be seen; nothing outside `limit` is computed, however far a
+    /// filter reaches.
+    pub(crate) fn new(filter: Arc<Filter>, grid: Grid, visible: IntRect, limit: IntRect) -> Self {
+        let region = filter.region.map_or(limit, |region| grid.pixels(region)).intersect(limit);
+        let mut placed = Self { filter, grid, region, steps: Vec::new(), source: IntRect::EMPTY };
+        placed.find_subregions();
+        placed.find_wanted(visible);
+        placed
+    }
+
+    /// The pixels of the source graphic that the filter reads.
+    pub(crate) fn source(&self) -> IntRect {
+        self.source
+    }
+
+    /// The subregion of a primitive, in pixels.
+    pub(crate) fn subregion(&self, primitive: usize) -> IntRect {
+        self.steps.get(primitive).map_or(IntRect::EMPTY, |step| step.subregion)
+    }
+
+    /// The pixels that the result can have.
+    pub(crate) fn result(&self) -> IntRect {
+        self.steps.last().map_or(IntRect::EMPTY, |step| step.wanted)
+    }
+
+    fn find_subregions(&mut self) {
+        let filter = Arc::clone(&self.filter);
+        for (index, primitive) in filter.primitives.iter().enumerate() {
+            let own = primitive.subregion.map_or(self.region, |rect| self.grid.pixels(rect).intersect(self.region));
+            let subregion = match primitive.kind {
+                // It has no subregion of its own, but that of what it moves, which is moved for a tile only.
+                Kind::Offset { input, .. } => match self.result_of(input, index) {
+                    Some(input) => self.steps.get(input).map_or(own, |step| step.subregion),
+                    None => own,
+                },
+                _ => own,
+            };
+            self.steps.push(Step { subregion, wanted: IntRect::EMPTY });
+        }
+    }
+
+    /// The index of the primitive that an input of primitive `index` names; `None` for the source.
+    fn result_of(&self, input: Input, index: usize) -> Option<usize> {
+        match input {
+            Input::Result(result) if result < index => Some(result),
+            _ => None,
+        }
+    }
+
+    fn find_wanted(&mut self, visible: IntRect) {
+        let filter = Arc::clone(&self.filter);
+        if let (Some(last), Some(primitive)) = (self.steps.last_mut(), filter.primitives.last()) {
+            last.wanted = match primitive.kind {
+                Kind::Offset { .. } => visible.intersect(self.region),
+                _ => visible.intersect(last.subregion),
+            };
+        }
+        for (index, primitive) in filter.primitives.iter().enumerate().rev() {
+            let Some(Step { wanted, .. }) = self.steps.get(index).copied() else { continue };
+            if wanted.is_empty() {
+                continue;
+            }
+            for (place, input) in primitive.kind.inputs().into_iter().enumerate() {
+                let area = self.read(&primitive.kind, place, input, index, wanted).intersect(self.region);
+                let result = self.result_of(input, index);
+                let is_offset = result
+                    .and_then(|result| filter.primitives.get(result))
+                    .is_some_and(|primitive| matches!(primitive.kind, Kind::Offset { .. }));
+                match result.and_then(|result| self.steps.get_mut(result)) {
+                    Some(step) => {
+                        let area = if is_offset { area } else { area.intersect(step.subregion) };
+                        step.wanted = union(step.wanted, area);
+                    }
+                    None => self.source = union(self.source, area),
+                }
+            }
+        }
+    }
+
+    /// What a primitive reads of its input for the pixels `wanted`.
+    fn read(&self, kind: &Kind, place: usize, input: Input, index: usize, wanted: IntRect) -> IntRect {
+        match kind {
+            Kind::GaussianBlur { deviation_x, deviation_y, .. } => {
+                let reach = self.blurs(*deviation_x, *deviation_y);
+                let reach = (reach.0.reach(), reach.1.reach());
+                grown(wanted, reach, reach)
+            }
+            Kind::DropShadow { dx, dy, deviation_x, deviation_y, .. } => {
+                let reach = self.blurs(*deviation_x, *deviation_y);
+                let reach = (reach.0.reach(), reach.1.reach());
+                let (dx, dy) = self.whole(*dx, *dy);
+                union(wanted, grown(moved(wanted, -dx, -dy), reach, reach))
+            }
+            Kind::Offset { dx, dy, .. } => {
+                let (dx, dy) = self.whole(*dx, *dy);
+                moved(wanted, -dx, -dy)
+            }
+            Kind::Tile { .. } => match self.result_of(input, index) {
+                Some(result) => self.subregion(result),
+                None => self.region,
+            },
+            Kind::ConvolveMatrix { matrix, .. } => match matrix.edge_mode {
+                EdgeMode::Wrap => self.region,
+                _ => {
+                    let (before, after) = matrix.reach();
+                    grown(wanted, before, after)
+                }
+            },
+            Kind::Morphology { radius_x, radius_y, .. } => {
+                let radius = self.radii(*radius_x, *radius_y).unwrap_or((0, 0));
+                grown(wanted, radius, radius)
+            }
+            Kind::DisplacementMap { displacement, .. } if place == 0 => {
+                let reach = |scale: f32| whole_pixels((displacement.scale * scale).abs() * 0.5).saturating_add(1);
+                let reach = (reach(self.grid.scale.0), reach(self.grid.scale.1));
+                grown(wanted, reach, reach)
+            }
+            Kind::DiffuseLighting { .. } | Kind::SpecularLighting { .. } => grown(wanted, (1, 1), (1, 1)),
+            _ => wanted,
+        }
+    }
+
+    /// The region, if the filter has one.
+    fn cut(&self) -> Option<IntRect> {
+        self.filter.region.map(|_| self.region)
+    }
+
+    fn blurs(&self, deviation_x: f32, deviation_y: f32) -> (Blur, Blur) {
+        (Blur::new(deviation_x * self.grid.scale.0), Blur::new(deviation_y * self.grid.scale.1))
+    }
+
+    fn whole(&self, dx: f32, dy: f32) -> (i32, i32) {
+        (whole_pixels(dx * self.grid.scale.0), whole_pixels(dy * self.grid.scale.1))
+    }
+
+    /// A morphology's radii in pixels; `None` where it makes everything transparent.
+    fn radii(&self, radius_x: f32, radius_y: f32) -> Option<(i32, i32)> {
+        let (x, y) = (radius_x * self.grid.scale.0, radius_y * self.grid.scale.1);
+        // At most so that windows do not overflow; a picture is smaller.
+        let whole = |v: f32| v.round().min(1e6) as i32;
+        (x > 0.0 && y > 0.0).then(|| (whole(x), whole(y)))
+    }
+
+    /// What the filter makes of the source graphic; in sRGB.
+    pub(crate) fn run(&self, source: Image, work: Work) -> Result<Image> {
+        let source = Arc::new(source);
+        let mut results: Vec<Option<(Arc<Image>, ColorSpace)>> = Vec::new();
+        // The last primitive that reads each result: after it the picture is dropped.
+        let mut last_use = vec![0; self.steps.len()];
+        for (index, primitive) in self.filter.primitives.iter().enumerate() {
+            for input in primitive.kind.inputs() {
+                if let Some(last) = self.result_of(input, index).and_then(|result| last_use.get_mut(result)) {
+                    *last = index;
+                }
+            }
+        }
+        for (index, primitive) in self.filter.primitives.iter().enumerate() {
+            let Some(step) = self.steps.get(index) else { break };
+            let result = if step.wanted.is_empty() {
+                None
+            } else {
+                let inputs = Inputs { placed: self, source: &source, results: &results, index, work };
+                let (image, space) = inputs.step(primitive, step)?;
+                Some((Arc::new(image), space))
+            };
+            for (result, last) in results.iter_mut().zip(&last_use) {
+                if *last == index {
+                    *result = None;
+                }
+            }
+            results.push(result);
+        }
+        let Some((image, space)) = results.pop().flatten() else { return Ok(Image::empty()) };
+        let mut image = Arc::unwrap_or_clone(image);
+        convert(&mut image, space, ColorSpace::Srgb, work);
+        Ok(image)
+    }
+}
+
+/// What a primitive finds when its turn comes.
+struct Inputs<'a> {
+    placed: &'a PlacedFilter,
+    source: &'a Arc<Image>,
+    results: &'a [Option<(Arc<Image>, ColorSpace)>],
+    index: usize,
+    work: Work,
+}
+
+impl Inputs<'_> {
+    /// An input as it is, and its space.
+    fn raw(&self, input: Input) -> (Arc<Image>, ColorSpace) {
+        match self.placed.result_of(input, self.index) {
+            Some(result) => self
+                .results
+                .get(result)
+                .and_then(Clone::clone)
+                .unwrap_or_else(|| (Arc::new(Image::empty()), ColorSpace::Srgb)),
+            None if input == Input::SourceAlpha => {
+                let mut image = Image::clone(self.source);
+                image.for_pixels(self.work, |pixels| {
+                    for pixel in pixels {
+                        *pixel = [0, 0, 0, pixel[3]];
+                    }
+                });
+                (Arc::new(image), ColorSpace::Srgb)
+            }
+            None => (Arc::clone(self.source), ColorSpace::Srgb),
+        }
+    }
+
+    /// An input in the given space, shared where possible.
+    fn shared(&self, input: Input, space: ColorSpace) -> Arc<Image> {
+        let (image, own) = self.raw(input);
+        // Black is black in both.
+        if own == space || input == Input::SourceAlpha {
+            return image;
+        }
+        let mut image = Arc::unwrap_or_clone(image);
+        convert(&mut image, own, space, self.work);
+        Arc::new(image)
+    }
+
+    /// An input in the given space, to change.
+    fn owned(&self, input: Input, space: ColorSpace) -> Image {
+        Arc::unwrap_or_clone(self.shared(input, space))
+    }
+
+    /// A primitive's result and its space.
+    fn step(&self, primitive: &Primitive, step: &Step) -> Result<(Image, ColorSpace)> {
+        let Self { placed, work, .. } = *self;
+        let (area, space) = (step.wanted, primitive.color_space);
+        let (region, grid) = (placed.region, &placed.grid);
+        let image = match &primitive.kind {
+            Kind::Blend { top, bottom, mode } => {
+                blend(&self.shared(*top, space), self.owned(*bottom, space), area, *mode, work)?
+            }
+            Kind::ColorMatrix { input, matrix } if matrix.is_finite() => {
+                color_matrix(self.owned(*input, space), area, matrix, work)?
+            }
+            Kind::ColorMatrix { .. } => Image::empty(),
+            Kind::ComponentTransfer { input, functions } => {
+                component_transfer(self.owned(*input, space), area, functions, work)?
+            }
+            Kind::Composite { top, bottom, operator } => {
+                composite(&self.shared(*top, space), self.owned(*bottom, space), area, *operator, work)?
+            }
+            Kind::ConvolveMatrix { input, matrix } => {
+                convolve(&self.shared(*input, space), area, region, matrix, work)?
+            }
+            Kind::DiffuseLighting { input, lighting } => {
+                lighting::diffuse(&self.raw(*input).0, area, region, lighting, &grid.map(), work)?
+            }
+            Kind::SpecularLighting { input, lighting } => {
+                lighting::specular(&self.raw(*input).0, area, region, lighting, &grid.map(), work)?
+            }
+            Kind::DisplacementMap { input, map, displacement } => {
+                let scale = (displacement.scale * grid.scale.0, displacement.scale * grid.scale.1);
+                // The picture's own colours are only moved.
+                let (image, own) = self.raw(*input);
+                if !(scale.0.is_finite() && scale.1.is_finite()) {
+                    return Ok((Image::empty(), own));
+                }
+                return Ok((displace(&image, &self.shared(*map, space), area, displacement, scale, work)?, own));
+            }
+            Kind::DropShadow { input, dx, dy, deviation_x, deviation_y, color } => {
+                let (across, down) = placed.blurs(*deviation_x, *deviation_y);
+                let color = color_in(space, *color);
+                let shadow = DropShadow { across, down, offset: placed.whole(*dx, *dy), color };
+                drop_shadow(&self.shared(*input, space), area, placed.cut(), &shadow, work)?
+            }
+            Kind::Flood { color } => return Ok((flood(area, *color)?, ColorSpace::Srgb)),
+            Kind::GaussianBlur { input, deviation_x, deviation_y } => {
+                let (across, down) = placed.blurs(*deviation_x, *deviation_y);
+                if across.is_nothing() && down.is_nothing() {
+                    // Nothing is rounded, then.
+                    let (image, own) = self.raw(*input);
+                    return Ok((Arc::unwrap_or_clone(image).within(area)?, own));
+                }
+                blur(&self.shared(*input, space), area, placed.cut(), &across, &down, work)?
+            }
+            Kind::Image { image, destination } => {
+                return Ok((picture(image, area, grid.rect(*destination), work)?, ColorSpace::Srgb));
+            }
+            Kind::Merge { inputs } => merge(inputs.iter().map(|input| Ok(self.owned(*input, space))), area, work)?,
+            Kind::Morphology { input, operator, radius_x, radius_y } => match placed.radii(*radius_x, *radius_y) {
+                Some(radius) => morphology(&self.shared(*input, space), area, region, *operator, radius, work)?,
+                None => Image::empty(),
+            },
+            Kind::Offset { input, dx, dy } => {
+                let (image, own) = self.raw(*input);
+                let (dx, dy) = placed.whole(*dx, *dy);
+                return Ok((offset(&image, area, dx, dy)?, own));
+            }
+            Kind::Tile { input } => {
+                let (image, own) = self.raw(*input);
+                let from = match placed.result_of(*input, self.index) {
+                    Some(result) => placed.subregion(result),
+                    None => region,
+                };
+                return Ok((tile(&image, area, from, work)?, own));
+            }
+            Kind::Turbulence(noise) => turbulence(noise, area, step.subregion, &grid.map(), work)?,
+        };
+        Ok((image, space))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::image::tests::{WORK, image, noise};
+    use super::super::{Channel, ColorMatrix, CompositeOperator, ConvolveMatrix, DisplacementMap, MorphologyOperator};
+    use super::*;
+    use crate::blend::BlendMode;
+    use crate::color::Color;
+
+    const LIMIT: IntRect = IntRect::from_ltrb(-500, -500, 500, 500);
+
+    fn place(filter: &Filter, visible: IntRect) -> PlacedFilter {
+        PlacedFilter::new(Arc::new(filter.clone()), Grid::new(Transform::IDENTITY), visible, LIMIT)
+    }
+
+    fn run(filter: &Filter, source: &Image, visible: IntRect) -> Image {
+        let placed = place(filter, visible);
+        placed.run(source.crop(placed.source()).unwrap(), WORK).unwrap().crop(visible).unwrap()
+    }
+
+    #[test]
+    fn inputs_name_results_and_what_is_unknown_is_the_source() {
+        let area = IntRect::from_ltrb(0, 0, 3, 1);
+        let mut filter = Filter::new().with_region(area.to_rect());
+        let moved = filter.add(Kind::Offset { input: Input::SourceGraphic, dx: 1.0, dy: 0.0 });
+        filter.add(Kind::Merge { inputs: vec![moved, Input::Result(7)] });
+        assert_eq!(run(&filter, &image(0, 0, &["#.."]), area), image(0, 0, &["##."]));
+        assert_eq!(run(&Filter::new(), &image(0, 0, &["#.."]), area), image(0, 0, &["..."]));
+    }
+
+    #[test]
+    fn subregions_cut_results_and_are_tiles() {
+        let area = IntRect::from_ltrb(0, 0, 6, 2);
+        let mut filter = Filter::new().with_region(area.to_rect());
+        let flood = Primitive::from(Kind::Flood { color: Color::WHITE });
+        let flood = filter.add(flood.with_subregion(Rect::from_xywh(1.0, 0.0, 1.0, 1.0)));
+        assert_eq!(run(&filter, &Image::empty(), area), image(0, 0, &[".#....", "......"]));
+        let moved = filter.add(Kind::Offset { input: flood, dx: 1.0, dy: 1.0 });
+        assert_eq!(run(&filter, &Image::empty(), area), image(0, 0, &["......", "..#..."]));
+        let _ = moved;
+        let cell = Primitive::from(Kind::Merge { inputs: vec![flood] });
+        let cell = filter.add(cell.with_subregion(Rect::from_xywh(0.0, 0.0, 2.0, 2.0)));
+        filter.add(Kind::Tile { input: cell });
+        assert_eq!(run(&filter, &Image::empty(), area), image(0, 0, &[".#.#.#", "......"]));
+    }
+
+    #[test]
+    fn linear_light_is_converted_there_and_back() {
+        let area = IntRect::from_ltrb(0, 0, 1, 1);
+        let mut filter = Filter::new();
+        let half = CompositeOperator::Arithmetic { k1: 0.0, k2: 0.5, k3: 0.5, k4: 0.0 };
+        let white = filter.add(Kind::Flood { color: Color::WHITE });
+        let black = filter.add(Kind::Flood { color: Color::BLACK });
+        let mean = Primitive::from(Kind::Composite { top: white, bottom: black, operator: half });
+        filter.add(mean.clone());
+        // Arithmetic rounds down.
+        assert_eq!(run(&filter, &Image::empty(), area).pixels(), [[127, 127, 127, 255]]);
+        filter.primitives.pop();
+        filter.add(mean.with_color_space(ColorSpace::LinearRgb));
+        // 127 of 255 of the light is 187.2 in sRGB.
+        assert_eq!(run(&filter, &Image::empty(), area).pixels(), [[187, 187, 187, 255]]);
+    }
+
+    /// Every kind, each reading what the last one gave.
+    fn everything() -> Filter {
+        let mut filter = Filter::new().with_region(Rect::from_xywh(-20.0, -10.0, 120.0, 90.0));
+        let blurred =
+            filter.add(Kind::GaussianBlur { input: Input::SourceGraphic, deviation_x: 2.0, deviation_y: 4.0 });
+        let shadow = filter.add(Kind::DropShadow {
+            input: blurred,
+            dx: 5.0,
+            dy: -3.5,
+            deviation_x: 1.0,
+            deviation_y: 6.0,
+            color: Color::from_rgba(0.9, 0.3, 0.1, 0.7),
+        });
+        let fat = filter.add(
+            Primitive::from(Kind::Morphology {
+                input: shadow,
+                operator: MorphologyOperator::Dilate,
+                radius_x: 3.0,
+                radius_y: 1.0,
+            })
+            .with_color_space(ColorSpace::LinearRgb),
+        );
+        let thin = filter.add(Kind::Morphology {
+            input: fat,
+            operator: MorphologyOperator::Erode,
+            radius_x: 1.0,
+            radius_y: 2.0,
+        });
+        let sharp = filter.add(Kind::ConvolveMatrix {
+            input: thin,
+            matrix: ConvolveMatrix {
+                columns: 3,
+                rows: 3,
+                weights: vec![0.0, -1.0, 0.0, -1.0, 6.0, -1.0, 0.0, -2.0, 0.0],
+                target_x: 0,
+                target_y: 2,
+                divisor: 1.0,
+                bias: 0.1,
+                edge_mode: EdgeMode::Duplicate,
+                preserve_alpha: false,
+            },
+        });
+        let grey = filter.add(Kind::ColorMatrix { input: sharp, matrix: ColorMatrix::hue_rotate(40.0) });
+        let map = DisplacementMap { scale: 12.0, x_channel: Channel::Red, y_channel: Channel::Alpha };
+        let moved = filter.add(Kind::DisplacementMap { input: grey, map: blurred, displacement: map });
+        let away = filter.add(Kind::Offset { input: moved, dx: -4.0, dy: 7.0 });
+        filter.add(Kind::Blend { top: away, bottom: sharp, mode: BlendMode::Multiply });
+        filter
+    }
+
+    #[test]
+    fn what_is_seen_does_not_depend_on_how_much_is_seen() {
+        let filter = everything();
+        let source = noise(IntRect::from_ltrb(-30, 5, 70, 60), 3);
+        let whole = run(&filter, &source, LIMIT);
+        assert!(whole.pixels().iter().filter(|pixel| **pixel != [0; 4]).count() > 2000);
+        for visible in [
+            IntRect::from_ltrb(0, 0, 40, 30),
+            IntRect::from_ltrb(33, 20, 34, 21),
+            IntRect::from_ltrb(-100, -100, -10, 100),
+            IntRect::from_ltrb(60, -40, 130, 50),
+            IntRect::from_ltrb(200, 200, 210, 210),
+        ] {
+            assert_eq!(run(&filter, &source, visible), whole.crop(visible).unwrap(), "{visible:?}");
+        }
+    }
+
+    #[test]
+    fn only_what_matters_of_the_source_is_asked_for() {
+        let mut filter = Filter::new();
+        let blurred =
+            filter.add(Kind::GaussianBlur { input: Input::SourceGraphic, deviation_x: 1.0, deviation_y: 0.0 });
+        filter.add(Kind::Offset { input: blurred, dx: 10.0, dy: 0.0 });
+        let placed = place(&filter, IntRect::from_ltrb(0, 0, 5, 5));
+        assert_eq!(placed.source(), IntRect::from_ltrb(-13, 0, -2, 5));
+        // Far away, and nothing.
+        let placed = place(&filter.clone().with_region(Rect::from_xywh(50.0, 0.0, 9.0, 9.0)), placed.source());
+        assert!(placed.source().is_empty() && placed.result().is_empty());
+    }
+}
