@@ -122,6 +122,7 @@ mod paint;
 mod path;
 pub mod raster;
 mod render;
+pub mod space;
 mod style;
 mod surface;
 #[cfg(feature = "svg")]
@@ -132,6 +133,7 @@ pub use canvas::{Canvas, SaveGuard, Shadow};
 pub use color::Color;
 pub use display_list::{ImagePaint, Paint};
 pub use error::{Error, Result};
+pub use fearless_simd;
 pub use geom::{IntRect, Point, Rect, Transform};
 pub use glam;
 pub use num::level::SimdLevel;

@@ -1,6 +1,7 @@
-//! Numbers: fixed point, reproducible trigonometry, SIMD lanes and levels.
+//! Numbers and machinery: fixed point, reproducible trigonometry, SIMD lanes and levels, threads.
 
 pub(crate) mod fixed;
 pub(crate) mod lanes;
 pub(crate) mod level;
+pub(crate) mod pool;
 pub(crate) mod trig;

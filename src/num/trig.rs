@@ -27,3 +27,8 @@ pub(crate) fn acos(x: f64) -> f64 {
 pub(crate) fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
+
+/// The logarithm of `x` to base 2.
+pub(crate) fn log2(x: f64) -> f64 {
+    libm::log2(x)
+}

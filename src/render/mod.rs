@@ -1,14 +1,13 @@
 //! From a recording to pixels.
 //!
 //! [`prepare`] turns the recording's shapes into edges listed by band, [`band`] paints one band from its
-//! first command to its last, and [`pool`] hands bands to threads. A band's pixels depend on the recording
+//! first command to its last, and `num::pool` hands bands to threads. A band's pixels depend on the recording
 //! alone, so that neither the number of threads nor the bands' height shows.
 
 mod band;
 mod clip;
 mod occlusion;
 mod plan;
-mod pool;
 mod prepare;
 mod settings;
 mod surface;
@@ -52,7 +51,7 @@ impl Renderer {
         let Some(chunks) = self.chunks.get_mut(..chunk_count) else { return planned };
         let ranges = prepare::split(list.commands.len(), chunk_count);
         let jobs: Vec<_> = chunks.iter_mut().zip(ranges).collect();
-        pool::for_each(settings.threads, jobs, |(chunk, range)| {
+        crate::num::pool::for_each(settings.threads, jobs, |(chunk, range)| {
             chunk.prepare(list, &plan, range, frame, bands, band_height.trailing_zeros(), settings.level);
         });
 
@@ -61,7 +60,7 @@ impl Renderer {
         let stride = target.stride();
         let jobs: Vec<_> =
             target.bytes_mut().chunks_mut(stride * band_height as usize).enumerate().take(bands).collect();
-        pool::for_each(settings.threads, jobs, |(index, rows)| {
+        crate::num::pool::for_each(settings.threads, jobs, |(index, rows)| {
             let mut own = scratch.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
             let top = index as u32 * band_height;
             let surface =

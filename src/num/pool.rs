@@ -2,7 +2,7 @@
 
 /// Runs `work` on every job, on up to `threads` threads; returns when all are done.
 #[cfg(feature = "parallel")]
-pub(super) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) + Sync) {
+pub(crate) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) + Sync) {
     use rayon::prelude::*;
 
     if threads <= 1 || jobs.len() <= 1 {
@@ -18,7 +18,7 @@ pub(super) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) +
 
 /// Runs `work` on every job.
 #[cfg(not(feature = "parallel"))]
-pub(super) fn for_each<T>(_threads: usize, jobs: Vec<T>, work: impl Fn(T)) {
+pub(crate) fn for_each<T>(_threads: usize, jobs: Vec<T>, work: impl Fn(T)) {
     jobs.into_iter().for_each(work);
 }
 
