@@ -10,7 +10,9 @@
 mod assembly;
 mod batch;
 mod bin;
+pub mod camera;
 mod clip;
+pub mod compress;
 mod counters;
 mod depth;
 mod fragment;
@@ -22,6 +24,7 @@ mod shade;
 mod state;
 mod target;
 mod test;
+mod texture;
 mod traverse;
 mod vertex;
 
@@ -36,4 +39,5 @@ pub use msaa::Samples;
 pub use pipeline::Pipeline;
 pub use state::{Blend, Compare, Cull, Depth, DepthMapping, Fill, FrontFace, State, Stencil, StencilFace, StencilOp};
 pub use target::{Accumulation, Frames, Target};
+pub use texture::{Address, Filter, Sampler, Texture};
 pub use vertex::{ClipDepth, MAX_VARYINGS, VertexFn, VertexShader, Viewport, vertex_fn};

@@ -149,7 +149,7 @@ fn s5() -> Scene {
         let (x, y) = (random() * 2.0 - 1.0, random() * 2.0 - 1.0);
         let (dx, dy) = (angle.cos(), angle.sin());
         let z = random();
-        let thin = 0.002;
+        let thin = 0.006;
         let corners = [(x - dx, y - dy), (x + dx, y + dy), (x + dx - dy * thin, y + dy + dx * thin)];
         for (k, (x, y)) in corners.into_iter().enumerate() {
             let mut values = [random(), random(), random()];
