@@ -195,6 +195,26 @@ impl Pipeline {
         }
     }
 
+    /// Which primitives each band of rows lists, and how many rows a band has: what [`Pipeline::draw`] makes of the primitives with
+    /// [`Pipeline::threads`] threads before it draws any. A list's order is the order of submission; with one thread there is one band.
+    pub fn bins<V: VertexShader>(
+        &self,
+        target: &Target,
+        primitives: &Primitives<'_, V::Vertex>,
+        vertex: &V,
+    ) -> (u32, Vec<Vec<u32>>) {
+        let prepared = self.prepare(target);
+        let (transform, clamp) = (&prepared.binning.transform, self.state.depth.clamp);
+        let shaded = shade_vertices(vertex, primitives.vertices, transform, clamp, prepared.snap, prepared.threads);
+        let mut bins = vec![Vec::new(); prepared.binning.bands];
+        for chunk in prepared.bin(primitives, &shaded) {
+            for (bin, draws) in bins.iter_mut().zip(&chunk.bands) {
+                bin.extend(draws.iter().map(|draw| draw.primitive));
+            }
+        }
+        (prepared.binning.band_rows as u32, bins)
+    }
+
     /// The first pass of a depth prepass: draws depths alone. The colours come with a second [`Pipeline::draw`] of the same
     /// primitives by the state of [`Pipeline::after_prepass`], which shades each pixel at most once.
     pub fn draw_depth<V: VertexShader>(

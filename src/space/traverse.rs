@@ -531,8 +531,10 @@ impl Walk<'_, '_, '_> {
         };
         let end = if draw.kind == Kind::Line { long } else { long - 1 };
         for step in first.max(0)..=last.min(end) {
-            // The minor offset: step · short / long, rounded to nearest, ties towards the start (E).
-            let minor = if long == 0 { 0 } else { (2 * step * short + long - 1) / (2 * long) };
+            // The minor offset: step · short / long, rounded to nearest, ties towards the left or upper end, so that the line is
+            // the same from both ends.
+            let tie = if sign >= 0 { 1 } else { 0 };
+            let minor = if long == 0 { 0 } else { (2 * step * short + long - tie) / (2 * long) };
             let (x, y) = if steep {
                 (x0 + dx.signum() * minor, y0 + dy.signum() * step)
             } else {
