@@ -9,7 +9,7 @@ const FLOORS: [&[&str]; 10] = [
     &["geom"],
     &["color", "style"],
     &["path", "surface"],
-    &["raster", "paint", "blend", "codec"],
+    &["raster", "space", "paint", "blend", "codec"],
     &["filter"],
     &["display_list"],
     &["render"],
