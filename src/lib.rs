@@ -122,6 +122,7 @@ mod paint;
 mod path;
 pub mod raster;
 mod render;
+pub mod scene;
 pub mod space;
 mod style;
 mod surface;
