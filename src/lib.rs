@@ -123,6 +123,7 @@ mod path;
 mod pool;
 pub mod raster;
 mod render;
+pub mod scene;
 pub mod space;
 mod style;
 mod surface;

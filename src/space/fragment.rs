@@ -253,6 +253,12 @@ impl<'a, S: Simd> Fragments<'a, S> {
         self.planes.corners[0].get(index).copied().unwrap_or_default()
     }
 
+    /// A varying's value at vertex `corner` (0 ..= 2) of the triangle; see [`Fragments::barycentrics`] for their order.
+    #[inline(always)]
+    pub fn corner(&self, corner: usize, index: usize) -> f32 {
+        self.planes.corners.get(corner).and_then(|corner| corner.get(index)).copied().unwrap_or_default()
+    }
+
     /// The weights of the three vertices in screen space: 1 in all. The order of the second and third is the triangle's,
     /// or the other way round if it runs counter-clockwise on the screen.
     #[inline(always)]

@@ -251,9 +251,13 @@ fn write_coverage_rich(
         }
         for (members, value) in writes {
             let used = |packed: u64, slot: usize| (0..samples).filter(|s| slot_of(packed, *s) == slot).count();
-            let Some(slot) = (0..count).min_by_key(|slot| used(*packed, *slot)) else { continue };
+            // The same colour again shares its place.
+            let alike = tiles.iter().take(count).position(|tile| tile[row][lane] == value);
+            let alike = alike.filter(|slot| used(*packed, *slot) > 0);
+            let fewest = || (0..count).min_by_key(|slot| used(*packed, *slot));
+            let Some(slot) = alike.or_else(fewest) else { continue };
             for s in 0..samples {
-                if slot_of(*packed, s) == slot {
+                if alike.is_none() && slot_of(*packed, s) == slot {
                     *packed |= 15 << (4 * s);
                 }
             }

@@ -10,7 +10,7 @@ const FLOORS: [&[&str]; 10] = [
     &["color", "style"],
     &["path", "surface"],
     &["raster", "space", "paint", "blend", "codec"],
-    &["filter"],
+    &["filter", "scene"],
     &["display_list"],
     &["render"],
     &["canvas"],

@@ -23,6 +23,7 @@ mod seeds_lines;
 mod seeds_pipeline;
 mod seeds_polygons;
 mod seeds_sampling;
+mod seeds_scene;
 mod seeds_triangles;
 mod space_support;
 #[cfg(all(feature = "text", feature = "codec"))]
