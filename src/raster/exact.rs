@@ -54,6 +54,10 @@ struct Row {
     clusters: Vec<(i32, i32)>,
     /// Pixels touched twice: their columns and summed areas.
     pixels: Vec<(i32, i32)>,
+    /// How many pixels the parts touch, those that several touch counted as often.
+    touches: usize,
+    /// Whether there were too many.
+    crowded: bool,
 }
 
 /// The part of an edge in one row. Heights in 1/256 pixel from the row's top.
@@ -73,11 +77,36 @@ struct Part {
 }
 
 impl Row {
+    fn clear(&mut self) {
+        self.parts.clear();
+        self.clusters.clear();
+        self.pixels.clear();
+        self.touches = 0;
+        self.crowded = false;
+    }
+
+    #[inline(always)]
+    fn add(&mut self, part: Part) {
+        self.parts.push(part);
+        self.touches += part.touches();
+        if self.touches > MOST_TOUCHES {
+            self.thin();
+        }
+    }
+
+    /// Gives a row up, unless it has so many parts because they are the same.
+    #[cold]
+    fn thin(&mut self) {
+        self.sort();
+        self.touches = self.parts.iter().map(Part::touches).sum();
+        self.crowded |= self.touches > MOST_TOUCHES / 2;
+    }
+
     /// Puts the parts in order of their first column; those that are the same become one.
     fn sort(&mut self) {
-        let place = |part: &Part| (part.first, part.base, part.x.to_bits(), part.slope.to_bits(), part.y0, part.y1);
-        self.parts.sort_unstable_by_key(place);
+        self.parts.sort_unstable_by_key(|part| u64::from(part.first as u32) << 32 | u64::from(part.x.to_bits()));
         self.parts.dedup_by(|part, kept| {
+            let place = |part: &Part| (part.first, part.base, part.x, part.slope, part.y0, part.y1);
             let same = place(part) == place(kept);
             if same {
                 kept.winding = kept.winding.saturating_add(part.winding);
@@ -85,10 +114,12 @@ impl Row {
             same
         });
     }
+}
 
-    /// How many pixels the parts touch, those that several touch counted as often.
+impl Part {
+    #[inline(always)]
     fn touches(&self) -> usize {
-        self.parts.iter().map(|part| (part.last - part.first + 1).max(1) as usize).sum()
+        (self.last - self.first + 1).max(1) as usize
     }
 }
 
@@ -179,21 +210,14 @@ pub(crate) fn resolve<S: Simd>(
     scratch: &mut ExactScratch,
 ) {
     if find_clusters(cells) {
-        for row in &mut scratch.rows {
-            row.parts.clear();
-            row.clusters.clear();
-            row.pixels.clear();
-        }
+        scratch.rows.iter_mut().for_each(Row::clear);
         list_pixels(simd, cells, &mut scratch.rows);
         for edge in edges {
             gather(simd, cells, edge, top, &mut scratch.rows);
         }
         for (index, row) in scratch.rows.iter_mut().enumerate() {
-            if !row.pixels.is_empty() {
+            if !row.pixels.is_empty() && !row.crowded {
                 row.sort();
-                if row.touches() > MOST_TOUCHES {
-                    continue;
-                }
                 resolve_row(simd, cells.columns, index, row, rule, &mut scratch.window);
             }
         }
@@ -358,10 +382,10 @@ fn gather<S: Simd>(simd: S, cells: &StripCells<'_>, edge: &Edge, top: i32, rows:
                 let (from, to) = (column(&left), column(&right));
                 let reaches = within.get(from..=to.max(from)).unwrap_or(&[]);
                 let bit = 1 << index;
-                if at(&lower) > at(&upper) && reaches.iter().any(|marks| marks.cluster & bit != 0) {
+                if !row.crowded && at(&lower) > at(&upper) && reaches.iter().any(|marks| marks.cluster & bit != 0) {
                     let row_top = index as i32 * fixed::ONE;
                     let (y0, y1) = (at(&upper) + y - row_top, at(&lower) + y - row_top);
-                    row.parts.push(Part {
+                    row.add(Part {
                         first: (first + from) as i32,
                         last: (first + to) as i32,
                         x: parts.start + (row_top - y) as f32 * parts.slope,
