@@ -4,7 +4,7 @@ use super::Canvas;
 use crate::blend::BlendMode;
 use crate::color::Color;
 use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, Paint, Span};
-use crate::geom::{IntRect, Point, Rect, Transform};
+use crate::geom::{FixedRect, IntRect, Point, Rect, Transform};
 use crate::paint::PreparedPaint;
 use crate::path::{LineCap, LineJoin, Path, Radii, Stroke};
 use crate::style::{Antialias, FillRule};
@@ -42,10 +42,7 @@ impl Canvas<'_> {
 
     /// Fills a rectangle; one with negative width or height as if its edges were swapped.
     pub fn fill_rect(&mut self, rect: Rect, paint: impl Into<Paint>) {
-        let mut path = self.take_scratch();
-        path.rect(rect);
-        self.fill_path(&path, FillRule::NonZero, paint);
-        self.keep_scratch(path);
+        self.draw(paint.into(), |canvas| canvas.record_rect(rect));
     }
 
     /// Strokes a rectangle's outline.
@@ -263,6 +260,7 @@ impl Canvas<'_> {
             Geometry::Fill { transform, .. } | Geometry::Stroke { transform, .. } => {
                 *transform = transform.post_concat(Transform::from_translate(dx as f32, dy as f32));
             }
+            Geometry::Rect(rect) => *rect = rect.moved(dx, dy),
             Geometry::Spans((first, end)) => {
                 for span in self.list.spans.get_mut(*first as usize..*end as usize).unwrap_or(&mut []) {
                     *span = Span { y: span.y + dy, start: span.start + dx, end: span.end + dx };
@@ -279,9 +277,42 @@ impl Canvas<'_> {
         if transform.is_singular() {
             return None;
         }
+        if transform.is_axis_aligned()
+            && let Some(rect) = path.as_rect()
+        {
+            return self.record_device_rect(rect);
+        }
         let bounds = self.device_bounds(path, 0.0)?;
         let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
         Some((Geometry::Fill { verbs, points, transform, rule }, bounds))
+    }
+
+    /// As [`record_fill`](Self::record_fill) of a rectangle.
+    fn record_rect(&mut self, rect: Rect) -> Option<(Geometry, IntRect)> {
+        if !rect.is_finite() {
+            return None;
+        }
+        if self.state.to_pixels().is_axis_aligned() {
+            return self.record_device_rect(rect);
+        }
+        let mut path = self.take_scratch();
+        path.rect(rect);
+        let recorded = self.record_fill(&path, FillRule::NonZero);
+        self.keep_scratch(path);
+        recorded
+    }
+
+    /// A rectangle of user space that is one in device space, too: it needs no outline.
+    fn record_device_rect(&self, rect: Rect) -> Option<(Geometry, IntRect)> {
+        let transform = self.state.to_pixels();
+        let corner = transform.map(Point::new(rect.left, rect.top));
+        let opposite = transform.map(Point::new(rect.right, rect.bottom));
+        let device = Rect::from_ltrb(corner.x, corner.y, opposite.x, opposite.y).normalized();
+        if !device.is_finite() {
+            return None;
+        }
+        let fixed = FixedRect::new(device);
+        Some((Geometry::Rect(fixed), fixed.pixels()))
     }
 
     fn record_stroke(&mut self, path: &Path, stroke: &Stroke) -> Option<(Geometry, IntRect)> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::blend::BlendMode;
 use crate::color::Color;
 use crate::filter::PlacedFilter;
-use crate::geom::{IntRect, Point, Transform};
+use crate::geom::{FixedRect, IntRect, Point, Transform};
 use crate::paint::PreparedPaint;
 use crate::path::{Stroke, Verb};
 use crate::style::{Antialias, FillRule};
@@ -34,6 +34,8 @@ pub(crate) enum Geometry {
     },
     /// The stroke of an outline; `style` indexes [`DisplayList::strokes`].
     Stroke { verbs: (u32, u32), points: (u32, u32), transform: Transform, style: u32 },
+    /// An axis-aligned rectangle in device space.
+    Rect(FixedRect),
     /// Whole pixels: a range of [`DisplayList::spans`].
     Spans((u32, u32)),
     /// All pixels within the draw's bounds.

@@ -1,6 +1,7 @@
 //! Rectangles: one of real numbers, one of whole pixels.
 
 use super::Point;
+use crate::num::fixed;
 
 /// An axis-aligned rectangle. A rectangle whose edges are swapped (negative width or height) covers
 /// the same area as the swapped one; one with a non-finite edge covers nothing.
@@ -30,16 +31,33 @@ impl Rect {
     /// The smallest rectangle that holds every point, or `None` for no point or a non-finite one.
     pub fn from_points(points: &[Point]) -> Option<Self> {
         let first = points.first()?;
-        let mut rect = Self::from_ltrb(first.x, first.y, first.x, first.y);
-        let mut finite = 0.0;
-        for p in points {
-            finite += p.x * 0.0 + p.y * 0.0;
-            rect.left = if p.x < rect.left { p.x } else { rect.left };
-            rect.top = if p.y < rect.top { p.y } else { rect.top };
-            rect.right = if p.x > rect.right { p.x } else { rect.right };
-            rect.bottom = if p.y > rect.bottom { p.y } else { rect.bottom };
+        // Four points at a time, lane by lane: compilers make vectors of it.
+        let start = [first.x, first.y, first.x, first.y, first.x, first.y, first.x, first.y];
+        let (mut low, mut high, mut finite) = (start, start, [0.0; 8]);
+        let mut add = |block: [f32; 8]| {
+            for (((low, high), finite), v) in low.iter_mut().zip(&mut high).zip(&mut finite).zip(block) {
+                *low = if v < *low { v } else { *low };
+                *high = if v > *high { v } else { *high };
+                *finite += v * 0.0;
+            }
+        };
+        let (blocks, rest) = points.as_chunks::<4>();
+        for block in blocks {
+            add(bytemuck::cast(*block));
         }
-        (finite == 0.0).then_some(rect)
+        let mut last = [*first; 4];
+        for (last, p) in last.iter_mut().zip(rest) {
+            *last = *p;
+        }
+        add(bytemuck::cast(last));
+        let [mut rect, others @ ..]: [Self; 4] = std::array::from_fn(|i| {
+            let at = |lanes: &[f32; 8], lane: usize| lanes.get(lane).copied().unwrap_or(0.0);
+            Self::from_ltrb(at(&low, 2 * i), at(&low, 2 * i + 1), at(&high, 2 * i), at(&high, 2 * i + 1))
+        });
+        for other in others {
+            rect = rect.union(other);
+        }
+        (finite == [0.0; 8]).then_some(rect)
     }
 
     /// Right minus left.
@@ -109,6 +127,62 @@ impl Rect {
         let low = |v: f32| v.floor().clamp(-limit, limit) as i32;
         let high = |v: f32| v.ceil().clamp(-limit, limit) as i32;
         IntRect { left: low(self.left), top: low(self.top), right: high(self.right), bottom: high(self.bottom) }
+    }
+}
+
+/// A rectangle in 1/256 device pixel. Empty where an edge is not below its opposite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FixedRect {
+    pub(crate) left: i32,
+    pub(crate) top: i32,
+    pub(crate) right: i32,
+    pub(crate) bottom: i32,
+}
+
+impl FixedRect {
+    /// A finite rectangle with left ≤ right and top ≤ bottom, each edge rounded to nearest; edges beyond the range of
+    /// fixed point stop there.
+    pub(crate) fn new(rect: Rect) -> Self {
+        let fixed = |v: f32| fixed::from_f32(v.clamp(-fixed::LIMIT, fixed::LIMIT));
+        Self { left: fixed(rect.left), top: fixed(rect.top), right: fixed(rect.right), bottom: fixed(rect.bottom) }
+    }
+
+    /// A rectangle of whole pixels within ±2^23.
+    pub(crate) fn of_pixels(pixels: IntRect) -> Self {
+        Self {
+            left: pixels.left << fixed::SHIFT,
+            top: pixels.top << fixed::SHIFT,
+            right: pixels.right << fixed::SHIFT,
+            bottom: pixels.bottom << fixed::SHIFT,
+        }
+    }
+
+    /// The part inside of `pixels`, which must lie within ±2^23.
+    pub(crate) fn intersect(self, pixels: IntRect) -> Self {
+        Self {
+            left: self.left.max(pixels.left << fixed::SHIFT),
+            top: self.top.max(pixels.top << fixed::SHIFT),
+            right: self.right.min(pixels.right << fixed::SHIFT),
+            bottom: self.bottom.min(pixels.bottom << fixed::SHIFT),
+        }
+    }
+
+    /// The pixels that it touches.
+    pub(crate) fn pixels(self) -> IntRect {
+        let up = |v: i32| (v + fixed::ONE - 1) >> fixed::SHIFT;
+        IntRect::from_ltrb(self.left >> fixed::SHIFT, self.top >> fixed::SHIFT, up(self.right), up(self.bottom))
+    }
+
+    /// The same rectangle moved by whole pixels.
+    pub(crate) fn moved(self, dx: i32, dy: i32) -> Self {
+        let (dx, dy) = (dx << fixed::SHIFT, dy << fixed::SHIFT);
+        Self { left: self.left + dx, top: self.top + dy, right: self.right + dx, bottom: self.bottom + dy }
+    }
+
+    /// The same rectangle in pixels.
+    pub(crate) fn to_rect(self) -> Rect {
+        let pixels = |v: i32| v as f32 / fixed::ONE as f32;
+        Rect::from_ltrb(pixels(self.left), pixels(self.top), pixels(self.right), pixels(self.bottom))
     }
 }
 

@@ -136,6 +136,11 @@ impl Transform {
         a * d == b * c
     }
 
+    /// Whether rectangles stay rectangles: it scales and moves, and may turn by right angles.
+    pub(crate) fn is_axis_aligned(self) -> bool {
+        (self.kx == 0.0 && self.ky == 0.0) || (self.sx == 0.0 && self.sy == 0.0)
+    }
+
     /// Whether it changes nothing.
     pub fn is_identity(self) -> bool {
         self == Self::IDENTITY

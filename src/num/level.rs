@@ -71,6 +71,9 @@ impl SimdLevel {
 /// for it. Everything called from `$body` that should use the level must be `#[inline(always)]`, or
 /// enter `simd.vectorize` itself.
 ///
+/// With `RUSTFLAGS="--cfg rastrum_best_level_only"` SSE2 is left out, which takes a third off the time of a build: for
+/// measuring one change after another, not for use.
+///
 /// SSE4.2 and AVX-512 are not listed on purpose: each level is another copy of the renderer, the
 /// vectors here are at most 256 bits wide, and SSE2 covers what machines between the two have.
 macro_rules! dispatch {
@@ -84,7 +87,7 @@ macro_rules! dispatch {
                 #[inline(always)]
                 || $body,
             ),
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(rastrum_best_level_only)))]
             $crate::num::level::SimdLevel::Sse2 if let Some($simd) = best.as_sse2() => $simd.vectorize(
                 #[inline(always)]
                 || $body,

@@ -156,6 +156,26 @@ impl Path {
         Rect::from_points(&self.points)
     }
 
+    /// The rectangle that filling the path covers, if the path is one rectangle with edges along the axes.
+    pub(crate) fn as_rect(&self) -> Option<Rect> {
+        let [a, b, c, d] = match (&self.verbs[..], &self.points[..]) {
+            (
+                [Verb::MoveTo, Verb::LineTo, Verb::LineTo, Verb::LineTo]
+                | [Verb::MoveTo, Verb::LineTo, Verb::LineTo, Verb::LineTo, Verb::Close],
+                [a, b, c, d],
+            ) => [*a, *b, *c, *d],
+            (
+                [Verb::MoveTo, Verb::LineTo, Verb::LineTo, Verb::LineTo, Verb::LineTo]
+                | [Verb::MoveTo, Verb::LineTo, Verb::LineTo, Verb::LineTo, Verb::LineTo, Verb::Close],
+                [a, b, c, d, back],
+            ) if back == a => [*a, *b, *c, *d],
+            _ => return None,
+        };
+        let across_first = a.y == b.y && b.x == c.x && c.y == d.y && d.x == a.x;
+        let down_first = a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y;
+        (across_first || down_first).then(|| Rect::from_ltrb(a.x, a.y, c.x, c.y).normalized())
+    }
+
     /// The segments in order.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
         segments(&self.verbs, &self.points)
@@ -194,6 +214,41 @@ pub(crate) fn segments<'a>(verbs: &'a [Verb], points: &'a [Point]) -> impl Itera
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rectangles_are_known_as_such() {
+        let rect = Rect::from_ltrb(1.0, 2.0, 5.0, 9.0);
+        let corners = [(1.0, 2.0), (5.0, 2.0), (5.0, 9.0), (1.0, 9.0)];
+        for start in 0..4 {
+            for backwards in [false, true] {
+                let mut path = Path::new();
+                for i in 0..4 {
+                    let corner = corners[if backwards { start + 4 - i } else { start + i } % 4];
+                    if i == 0 {
+                        path.move_to(corner)
+                    } else {
+                        path.line_to(corner)
+                    };
+                }
+                assert_eq!(path.as_rect(), Some(rect), "{path:?}");
+                let mut closed = path.clone();
+                assert_eq!(closed.close().as_rect(), Some(rect));
+                let mut returning = path.clone();
+                returning.line_to(corners[start]);
+                assert_eq!(returning.as_rect(), Some(rect));
+                returning.close();
+                assert_eq!(returning.as_rect(), Some(rect));
+                path.line_to((3.0, 3.0));
+                assert_eq!(path.as_rect(), None);
+            }
+        }
+        let mut bow_tie = Path::new();
+        bow_tie.move_to((0.0, 0.0)).line_to((4.0, 0.0)).line_to((0.0, 4.0)).line_to((4.0, 4.0)).close();
+        assert_eq!(bow_tie.as_rect(), None);
+        let mut there_and_back = Path::new();
+        there_and_back.move_to((0.0, 0.0)).line_to((4.0, 0.0)).line_to((4.0, 0.0)).line_to((0.0, 0.0)).close();
+        assert!(there_and_back.as_rect().is_none_or(|rect| rect.height() == 0.0));
+    }
 
     #[test]
     fn a_line_without_a_move_starts_at_its_own_point() {

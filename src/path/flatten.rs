@@ -8,6 +8,13 @@ pub(crate) trait PolygonSink {
     fn begin(&mut self, p: Point);
     /// Adds a straight edge to `p`.
     fn line(&mut self, p: Point);
+    /// Adds straight edges to the first `count` (0 ..= 8) points.
+    #[inline(always)]
+    fn lines(&mut self, points: &[Point; 8], count: usize) {
+        for p in points.iter().take(count) {
+            self.line(*p);
+        }
+    }
     /// Ends the polygon with an edge back to its start.
     fn end(&mut self);
 }
@@ -15,7 +22,7 @@ pub(crate) trait PolygonSink {
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
-use super::builder::{Segment, Verb, segments};
+use super::builder::Verb;
 use crate::geom::Transform;
 
 /// How far, in device pixels, a flattened curve may lie from the true one: an eighth of what makes a
@@ -42,39 +49,35 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
     let mut open = false;
     let mut start = Point::ZERO;
     let mut last = Point::ZERO;
-    for segment in segments(verbs, points) {
-        match segment {
-            Segment::MoveTo(p) => {
-                if open {
-                    sink.end();
-                }
+    let mut rest = points;
+    for verb in verbs {
+        if matches!(verb, Verb::MoveTo | Verb::Close) {
+            if open {
+                sink.end();
                 open = false;
-                start = transform.map(p);
-                last = start;
-                continue;
             }
-            Segment::Close => {
-                if open {
-                    sink.end();
-                }
-                open = false;
-                last = start;
-                continue;
-            }
-            _ => {
-                if !open {
-                    sink.begin(last);
-                    open = true;
-                }
-            }
+        } else if !open {
+            sink.begin(last);
+            open = true;
         }
-        match segment {
-            Segment::LineTo(p) => {
-                last = transform.map(p);
+        match verb {
+            Verb::MoveTo => {
+                let Some(([p], after)) = rest.split_first_chunk() else { break };
+                rest = after;
+                start = transform.map(*p);
+                last = start;
+            }
+            Verb::Close => last = start,
+            Verb::LineTo => {
+                let Some(([p], after)) = rest.split_first_chunk() else { break };
+                rest = after;
+                last = transform.map(*p);
                 sink.line(last);
             }
-            Segment::QuadTo(c, p) => {
-                let (c, p) = (transform.map(c), transform.map(p));
+            Verb::QuadTo => {
+                let Some(([c, p], after)) = rest.split_first_chunk() else { break };
+                rest = after;
+                let (c, p) = (transform.map(*c), transform.map(*p));
                 let bend = last - c - (c - p);
                 // |second derivative| / 8 / tolerance, for n² pieces.
                 let pieces = piece_count(bend.dot(bend), 0.25 / TOLERANCE);
@@ -83,8 +86,10 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
                 polynomial(simd, [Point::ZERO, bend, b, start], pieces, p, sink);
                 last = p;
             }
-            Segment::CubicTo(c1, c2, p) => {
-                let (c1, c2, p) = (transform.map(c1), transform.map(c2), transform.map(p));
+            Verb::CubicTo => {
+                let Some(([c1, c2, p], after)) = rest.split_first_chunk() else { break };
+                rest = after;
+                let (c1, c2, p) = (transform.map(*c1), transform.map(*c2), transform.map(*p));
                 let (bend1, bend2) = (last - c1 - (c1 - c2), c1 - c2 - (c2 - p));
                 let (d1, d2) = (bend1.dot(bend1), bend2.dot(bend2));
                 let pieces = piece_count(if d1 > d2 { d1 } else { d2 }, 0.75 / TOLERANCE);
@@ -95,7 +100,6 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
                 polynomial(simd, [a, b, c, last - b * (2.0 * share)], pieces, p, sink);
                 last = p;
             }
-            Segment::MoveTo(_) | Segment::Close => {}
         }
     }
     if open {
@@ -106,12 +110,20 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
 /// ⌈√(factor · √squared)⌉ within 1 ..= [`MAX_PIECES`]; 1 if it is not finite.
 #[inline(always)]
 fn piece_count(squared: f32, factor: f32) -> u32 {
-    let squares = factor * squared.sqrt();
-    if squares <= 1.0 || !squares.is_finite() {
-        return 1;
+    // Most curves have few pieces, and comparing fourth powers needs no root.
+    let fourth = squared * (factor * factor);
+    if fourth <= 1.0 || !fourth.is_finite() {
+        1
+    } else if fourth <= 16.0 {
+        2
+    } else if fourth <= 81.0 {
+        3
+    } else if fourth <= 256.0 {
+        4
+    } else {
+        let pieces = fourth.sqrt().sqrt();
+        if pieces < MAX_PIECES { pieces as u32 + 1 } else { MAX_PIECES as u32 }
     }
-    let pieces = squares.sqrt();
-    if pieces < MAX_PIECES { pieces as u32 + 1 } else { MAX_PIECES as u32 }
 }
 
 /// The part of its second derivative that is taken from a curve before its inner points are computed.
@@ -122,26 +134,44 @@ fn piece_count(squared: f32, factor: f32) -> u32 {
 /// greatest distance, h² / 8 · C″.
 #[inline(always)]
 fn balance(pieces: u32) -> f32 {
-    let n = pieces as f32;
-    let squares = n * n;
-    if pieces > 2 { 1.0 / (12.0 * (squares - n)) } else { 0.125 / squares }
+    const FEW: [f32; 17] = {
+        let mut shares = [0.0; 17];
+        let mut pieces = 1;
+        while pieces < 17 {
+            shares[pieces] = balance_share(pieces as f32);
+            pieces += 1;
+        }
+        shares
+    };
+    // A division each would cost as much as a point of the curve.
+    FEW.get(pieces as usize).copied().unwrap_or_else(|| balance_share(pieces as f32))
+}
+
+const fn balance_share(pieces: f32) -> f32 {
+    let squares = pieces * pieces;
+    if pieces > 2.0 { 1.0 / (12.0 * (squares - pieces)) } else { 0.125 / squares }
 }
 
 /// Writes the points of ((a·t + b)·t + c)·t + d at t = 1/n … (n − 1)/n, and `end`.
 #[inline(always)]
 fn polynomial<S: Simd, K: PolygonSink>(simd: S, [a, b, c, d]: [Point; 4], pieces: u32, end: Point, sink: &mut K) {
-    let step = 1.0 / pieces as f32;
-    let mut index = 1;
-    while index < pieces {
-        let counts = i32x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]) + index as i32;
-        let t = counts.to_float::<f32x8<S>>() * step;
-        let x = ((t * a.x + b.x) * t + c.x) * t + d.x;
-        let y = ((t * a.y + b.y) * t + c.y) * t + d.y;
-        let (x, y) = (x.to_array(), y.to_array());
-        for (x, y) in x.into_iter().zip(y).take((pieces - index) as usize) {
-            sink.line(Point::new(x, y));
+    if pieces == 2 {
+        // The commonest curve of small shapes has one point to compute.
+        let at = |a: f32, b: f32, c: f32, d: f32| ((0.5 * a + b) * 0.5 + c) * 0.5 + d;
+        sink.line(Point::new(at(a.x, b.x, c.x, d.x), at(a.y, b.y, c.y, d.y)));
+    } else if pieces > 2 {
+        let step = 1.0 / pieces as f32;
+        let mut index = 1;
+        while index < pieces {
+            let counts = i32x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]) + index as i32;
+            let t = counts.to_float::<f32x8<S>>() * step;
+            let x = ((t * a.x + b.x) * t + c.x) * t + d.x;
+            let y = ((t * a.y + b.y) * t + c.y) * t + d.y;
+            let (low, high) = x.interleave(y);
+            let points: [Point; 8] = bytemuck::cast([low.to_array(), high.to_array()]);
+            sink.lines(&points, (pieces - index).min(8) as usize);
+            index += 8;
         }
-        index += 8;
     }
     sink.line(end);
 }

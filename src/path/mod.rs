@@ -7,6 +7,7 @@ pub(crate) mod flatten;
 mod hit;
 mod measure;
 mod outline;
+pub(crate) mod polygons;
 mod shapes;
 pub(crate) mod stroke;
 mod stroke_style;

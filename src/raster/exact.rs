@@ -3,161 +3,215 @@
 //! Summed areas are exact for a pixel that one edge passes through. Where two do, the sum knows how much
 //! each covers, not how much both do: the fill rule then has to be applied to the windings before
 //! the areas are added. (Two that follow each other up or down count as one: no scanline crosses both.)
-//! This is done for whole rows of a strip in which some pixel is touched twice: the row is cut at edge ends
-//! and at crossings into slabs in which the edges keep their order, the rule picks the edges that
-//! separate inside from outside, and those alone are accumulated again.
+//!
+//! While edges are added, each notes the pixels that it touches. A pixel that was touched twice is looked at again:
+//!
+//! 1. Touched pixels side by side in a row, one of them twice, are a *cluster* ([`find_clusters`]). The pixel left of it
+//!    is touched by no edge, so that its sum is the winding along the whole of the cluster's left side.
+//! 2. The parts of edges that lie in clusters are gathered ([`gather`]), and each cluster is walked from left to right.
+//! 3. A pixel is cut where parts begin or end in it into slabs ([`Slabs`]); in each slab eight or more scanlines, lanes of
+//!    a vector, are followed from crossing to crossing, and what of them is inside by the rule is added up.
+//! 4. The cells of the pixel and of its right neighbour are changed so that the sweep finds that value.
 
-use super::cell::{CROWD, StripCells};
-use super::edge::{Edge, EdgeLine};
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, i32x8};
+
+use super::cell::{Accumulator, BandPixel, Column, FULL, Marks, StripCells};
+use super::edge::Edge;
+use super::kernel::{CROWD, RowParts, STRIP_SHIFT, add_edge, for_strip_parts};
 use super::sample::inside;
 use crate::num::fixed;
+use crate::num::lanes::{max_f32, min_f32};
 use crate::style::FillRule;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
-/// At most so many edge pieces are sorted per row: with many edges in a row, the slabs get coarser
-/// (never fewer than [`FEWEST_SLABS`]), so that a row's cost stays linear in its edges. With more edges than that their
-/// crossings are not looked for.
-const PIECES_PER_ROW: usize = 8192;
-const FEWEST_SLABS: usize = 4;
+/// Pixels with more parts than this along one scanline are resolved scanline by scanline.
+const MOST_CROSSINGS: usize = 12;
+/// In rows whose parts touch more pixels than this, counted for each, summed areas stay: at such density, which of them
+/// are inside no longer shows, and a row's cost stays within bounds.
+const MOST_TOUCHES: usize = 1 << 14;
+/// Pixels cut into more slabs than this are cut evenly instead.
+const MOST_SLABS: usize = 12;
+const EVEN_SLABS: i32 = 8;
+/// Parts that run over more pixels than this per row sweep a pixel between two of eight scanlines: slabs are then cut
+/// finer.
+const FLAT: f32 = 2.0;
+const FINER: usize = 4;
 
 /// Working memory.
 #[derive(Debug, Default)]
 pub(crate) struct ExactScratch {
-    /// For each row of the strip the edges that it crosses.
-    rows: [Vec<Part>; BLOCK_HEIGHT],
-    ends: Vec<i32>,
-    active: Vec<Crossing>,
+    rows: [Row; BLOCK_HEIGHT],
+    window: Window,
 }
 
-/// The strips (as bits) of a band with so many edges that their cells' sums mean nothing, so that all rows
-/// have to be resolved. `top` is the band's top in fixed point.
-pub(crate) fn crowded_strips(edges: &[Edge], top: i32, strips: usize) -> u128 {
-    if edges.len() < CROWD {
-        return 0;
-    }
-    let mut counts = [0_usize; 128];
-    for edge in edges {
-        let (_, y0, _, y1, _) = edge.downward();
-        let strip = |y: i32| ((y - top) / (BLOCK_HEIGHT as i32 * fixed::ONE)).max(0) as usize;
-        for count in counts.iter_mut().take(strips.min(strip(y1 - 1) + 1)).skip(strip(y0)) {
-            *count += 1;
-        }
-    }
-    counts.iter().enumerate().fold(0, |bits, (strip, count)| bits | u128::from(*count >= CROWD) << strip)
+/// What is to be resolved in one row of a strip.
+#[derive(Debug, Default)]
+struct Row {
+    /// The parts of edges that lie in clusters.
+    parts: Vec<Part>,
+    /// The clusters' first columns, and the winding left of each.
+    clusters: Vec<(i32, i32)>,
+    /// Pixels touched twice: their columns and summed areas.
+    pixels: Vec<(i32, i32)>,
 }
 
-/// The part of an edge in one row.
+/// The part of an edge in one row. Heights in 1/256 pixel from the row's top.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    line: EdgeLine,
+    /// The columns that it touches.
+    first: i32,
+    last: i32,
+    /// x at the row's top, in 1/256 pixel right of the left side of column `base`.
+    x: f32,
+    base: i32,
+    /// Change of x per unit of y.
+    slope: f32,
     y0: i32,
     y1: i32,
     winding: i32,
 }
 
-/// A part in one slab: where it enters at the top and leaves at the bottom.
-#[derive(Clone, Copy, Debug)]
-struct Crossing {
-    top_x: i32,
-    bottom_x: i32,
-    winding: i32,
+impl Row {
+    /// Puts the parts in order of their first column; those that are the same become one.
+    fn sort(&mut self) {
+        let place = |part: &Part| (part.first, part.base, part.x.to_bits(), part.slope.to_bits(), part.y0, part.y1);
+        self.parts.sort_unstable_by_key(place);
+        self.parts.dedup_by(|part, kept| {
+            let same = place(part) == place(kept);
+            if same {
+                kept.winding = kept.winding.saturating_add(part.winding);
+            }
+            same
+        });
+    }
+
+    /// How many pixels the parts touch, those that several touch counted as often.
+    fn touches(&self) -> usize {
+        self.parts.iter().map(|part| (part.last - part.first + 1).max(1) as usize).sum()
+    }
 }
 
-/// Replaces the cells of rows in which some pixel is touched twice by exact ones, or those of all rows. `top` is
-/// the strip's top in fixed point; `edges` are all that were added to it.
-pub(crate) fn resolve(
+/// Adds the edges of a shape and notes which pixels they touch once and more often. Horizontal edges add nothing,
+/// but touch pixels as well: windings change at them.
+///
+/// Where an edge goes on, up or down, from the end of the one before it, the pixel in which they meet is not touched
+/// twice: along each scanline only one of them is crossed, and the sum of their areas is right by any fill rule.
+#[inline(always)]
+pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edges: &[Edge], top: i32, strips: usize) {
+    let mut before: Option<Edge> = None;
+    for edge in edges {
+        if edge.y0 == edge.y1 {
+            touch_horizontally(cells, edge, top);
+            before = None;
+            continue;
+        }
+        let joint = before.filter(|before| before.goes_on_with(*edge)).and_then(|_| pixel_within(edge, top));
+        let marks = joint.and_then(|joint| cells.marks(joint).map(|marks| (joint, *marks)));
+        add_edge::<S, true>(simd, cells, *edge, top, strips, &[]);
+        if let Some((joint, old)) = marks
+            && let Some(marks) = cells.marks(joint)
+        {
+            let row = 1 << joint.row;
+            marks.once = marks.once & !row | old.once & row;
+            marks.twice = marks.twice & !row | old.twice & row;
+        }
+        before = Some(*edge);
+    }
+}
+
+/// As [`add_touching_edges`], for more edges than whose areas 32 bits can sum; the cells then keep what they set aside, for
+/// [`resolve`] to know the windings.
+#[inline(always)]
+pub(crate) fn add_touching_crowd<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    edges: &[Edge],
+    top: i32,
+    strips: usize,
+    rule: FillRule,
+) {
+    for crowd in edges.chunks(CROWD - 1) {
+        add_touching_edges(simd, cells, crowd, top, strips);
+        cells.set_aside();
+    }
+    cells.bring_back(rule);
+}
+
+/// Marks the pixels inside which a horizontal edge lies.
+#[inline(never)]
+fn touch_horizontally(cells: &mut Accumulator, edge: &Edge, top: i32) {
+    let y = edge.y0 - top;
+    if y < 0 || y & (fixed::ONE - 1) == 0 {
+        return;
+    }
+    let (left, right) = if edge.x0 < edge.x1 { (edge.x0, edge.x1) } else { (edge.x1, edge.x0) };
+    let row = (y >> fixed::SHIFT) as usize;
+    let Some(mut strip) = cells.strip(row / BLOCK_HEIGHT) else { return };
+    let (first, last) = ((left >> fixed::SHIFT) as usize, (right >> fixed::SHIFT) as usize);
+    strip.occupy(first, last);
+    for marks in strip.marks.get_mut(first..=last).unwrap_or(&mut []) {
+        marks.touch(1 << (row % BLOCK_HEIGHT));
+    }
+}
+
+/// The pixel in which an edge starts, if that is inside of it and not on a side, where its neighbour might be meant.
+#[inline(always)]
+fn pixel_within(edge: &Edge, top: i32) -> Option<BandPixel> {
+    let (x, y) = (edge.x0, edge.y0 - top);
+    let inside = |v: i32| v >= 0 && v & (fixed::ONE - 1) != 0;
+    if !inside(x) || !inside(y) {
+        return None;
+    }
+    let row = (y >> fixed::SHIFT) as usize;
+    Some(BandPixel { strip: row / BLOCK_HEIGHT, column: (x >> fixed::SHIFT) as usize, row: row % BLOCK_HEIGHT })
+}
+
+/// Resolves the pixels of a strip that were touched twice, and clears the marks. `top` is the strip's top in fixed
+/// point; `edges` are all that were added to it.
+#[inline(always)]
+pub(crate) fn resolve<S: Simd>(
+    simd: S,
     cells: &mut StripCells<'_>,
     edges: &[Edge],
     top: i32,
     rule: FillRule,
-    all_rows: bool,
     scratch: &mut ExactScratch,
 ) {
-    let all = if all_rows { 0xff } else { 0 };
-    let rows = take_touched(cells) | rows_with_horizontal_edges(edges, top) | all;
-    if rows == 0 {
-        return;
-    }
-    clear_rows(cells, rows);
-    scratch.rows.iter_mut().for_each(Vec::clear);
-    for edge in edges {
-        let (x0, y0, x1, y1, winding) = edge.downward();
-        let first = ((y0 - top) >> fixed::SHIFT).max(0);
-        let last = ((y1 - 1 - top) >> fixed::SHIFT).min(BLOCK_HEIGHT as i32 - 1);
-        if first > last {
-            continue;
+    if find_clusters(cells) {
+        for row in &mut scratch.rows {
+            row.parts.clear();
+            row.clusters.clear();
+            row.pixels.clear();
         }
-        let line = EdgeLine::new(x0, y0, x1, y1);
-        for row in first..=last {
-            if rows >> row & 1 == 1 {
-                let row_top = top + (row << fixed::SHIFT);
-                let part = Part { line, y0: y0.max(row_top), y1: y1.min(row_top + fixed::ONE), winding };
-                if let Some(list) = scratch.rows.get_mut(row as usize) {
-                    list.push(part);
+        list_pixels(simd, cells, &mut scratch.rows);
+        for edge in edges {
+            gather(simd, cells, edge, top, &mut scratch.rows);
+        }
+        for (index, row) in scratch.rows.iter_mut().enumerate() {
+            if !row.pixels.is_empty() {
+                row.sort();
+                if row.touches() > MOST_TOUCHES {
+                    continue;
                 }
+                resolve_row(simd, cells.columns, index, row, rule, &mut scratch.window);
             }
         }
     }
-    for (row, parts) in scratch.rows.iter().enumerate() {
-        if rows >> row & 1 == 1 {
-            resolve_row(cells, row, parts, rule, &mut scratch.ends, &mut scratch.active);
-        }
-    }
-}
-
-/// The rows with a pixel that two edges touch; clears the marks.
-fn take_touched(cells: &mut StripCells<'_>) -> u8 {
-    let mut rows = 0;
     for_occupied(cells.occupied, |block| {
-        let start = block * BLOCK_WIDTH;
-        for column in cells.touched.get_mut(start..start + BLOCK_WIDTH).unwrap_or(&mut []) {
-            let [once, twice] = column;
-            rows |= *twice;
-            (*once, *twice) = (0, 0);
-        }
-    });
-    rows
-}
-
-/// The rows inside which an outline goes on horizontally. Such edges are not listed, for they enclose nothing, but
-/// the cover that begins or ends with them reaches pixels that no other edge touches.
-///
-/// They show as ends inside a row that no other edge takes up: of each corner of an outline one edge arrives and one
-/// departs, so that the differences of a hash of their positions sum to zero.
-fn rows_with_horizontal_edges(edges: &[Edge], top: i32) -> u8 {
-    let mut sums = [0_u32; BLOCK_HEIGHT];
-    let mut add = |x: i32, y: i32, sign: u32| {
-        let row = (y - top) >> fixed::SHIFT;
-        if y & (fixed::ONE - 1) != 0
-            && let Some(sum) = usize::try_from(row).ok().and_then(|row| sums.get_mut(row))
-        {
-            let hash = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
-            *sum = sum.wrapping_add((hash ^ hash >> 15).wrapping_mul(sign));
-        }
-    };
-    for edge in edges {
-        add(edge.x0, edge.y0, 1);
-        add(edge.x1, edge.y1, u32::MAX);
-    }
-    sums.iter().enumerate().fold(0, |rows, (row, sum)| rows | u8::from(*sum != 0) << row)
-}
-
-/// Sets the cells of the given rows to zero.
-fn clear_rows(cells: &mut StripCells<'_>, rows: u8) {
-    let mut keep = [0; BLOCK_HEIGHT];
-    for (row, keep) in keep.iter_mut().enumerate() {
-        *keep = if rows >> row & 1 == 1 { 0 } else { -1 };
-    }
-    for_occupied(cells.occupied, |block| {
-        let start = block * BLOCK_WIDTH;
-        for column in cells.columns.get_mut(start..start + BLOCK_WIDTH).unwrap_or(&mut []) {
-            for (value, keep) in column.iter_mut().zip(keep) {
-                *value &= keep;
-            }
+        for marks in block_of(cells.marks, block) {
+            *marks = Marks::default();
         }
     });
 }
 
+/// The columns of a block.
+#[inline(always)]
+fn block_of<T>(columns: &mut [T], block: usize) -> &mut [T] {
+    columns.get_mut(block * BLOCK_WIDTH..(block + 1) * BLOCK_WIDTH).unwrap_or(&mut [])
+}
+
+#[inline(always)]
 fn for_occupied(occupied: &[u64], mut f: impl FnMut(usize)) {
     for (index, word) in occupied.iter().enumerate() {
         let mut bits = *word;
@@ -168,94 +222,401 @@ fn for_occupied(occupied: &[u64], mut f: impl FnMut(usize)) {
     }
 }
 
-fn resolve_row(
-    cells: &mut StripCells<'_>,
-    row: usize,
-    parts: &[Part],
-    rule: FillRule,
-    ends: &mut Vec<i32>,
-    active: &mut Vec<Crossing>,
-) {
-    ends.clear();
-    ends.extend(parts.iter().flat_map(|part| [part.y0, part.y1]));
-    ends.sort_unstable();
-    ends.dedup();
-    let thinnest =
-        (fixed::ONE as usize * parts.len() / PIECES_PER_ROW).clamp(1, fixed::ONE as usize / FEWEST_SLABS) as i32;
-    let crowded = parts.len() > PIECES_PER_ROW;
-    let mut rest = &ends[..];
-    while let [top, after @ ..] = rest {
-        let Some(bottom) = after.iter().find(|y| **y - top >= thinnest).or(after.last()).copied() else { break };
-        rest = &rest[rest.iter().position(|y| *y == bottom).unwrap_or(rest.len())..];
-        let mut top = *top;
-        while top < bottom {
-            enter(parts, top, bottom, active);
-            let cut = if crowded { bottom } else { first_crossing(active, top, bottom, thinnest) };
-            if cut < bottom {
-                enter(parts, top, cut, active);
+/// Marks the clusters, all rows at a time; false if there is none.
+#[inline(always)]
+fn find_clusters(cells: &mut StripCells<'_>) -> bool {
+    let StripCells { marks, occupied, .. } = cells;
+    let mut any = 0;
+    for_occupied(occupied, |block| {
+        for marks in block_of(marks, block) {
+            any |= marks.twice;
+        }
+    });
+    if any == 0 {
+        return false;
+    }
+    // To the right of a pixel touched twice, then to the left of what that found.
+    let (mut carry, mut before) = (0, usize::MAX);
+    for_occupied(occupied, |block| {
+        if block != before.wrapping_add(1) {
+            carry = 0;
+        }
+        for marks in block_of(marks, block) {
+            carry = marks.once & (marks.twice | carry);
+            marks.cluster = carry;
+        }
+        before = block;
+    });
+    let (mut carry, mut before) = (0, usize::MAX);
+    for (index, word) in occupied.iter().enumerate().rev() {
+        let mut bits = *word;
+        while bits != 0 {
+            let bit = 63 - bits.leading_zeros() as usize;
+            bits ^= 1 << bit;
+            let block = index * 64 + bit;
+            if block + 1 != before {
+                carry = 0;
             }
-            add_slab(cells, row, active, top, cut, rule);
-            top = cut;
+            for marks in block_of(marks, block).iter_mut().rev() {
+                carry = marks.once & (marks.cluster | carry);
+                marks.cluster = carry;
+            }
+            before = block;
         }
     }
+    true
 }
 
-/// The parts that cross a slab, by where they enter it.
-///
-/// Where ends closer together than the thinnest slab are passed over, the parts that cross the slab's
-/// middle stand for it: along one scanline, windings close.
-fn enter(parts: &[Part], top: i32, bottom: i32, active: &mut Vec<Crossing>) {
-    let middle = top + (bottom - top) / 2;
-    active.clear();
-    active.extend(parts.iter().filter(|part| part.y0 <= middle && middle < part.y1).map(|part| {
-        let (y0, y1) = (part.y0.max(top), part.y1.min(bottom));
-        Crossing { top_x: part.line.x_at(y0), bottom_x: part.line.x_at(y1), winding: part.winding }
-    }));
-    active.sort_unstable_by_key(|c| (c.top_x, c.bottom_x));
-}
-
-/// Changes of order by less than 1/32 pixel do not move coverage visibly.
-const NEAR: i32 = 8;
-const SWAPS_PER_EDGE: usize = 16;
-
-/// Where the first two neighbours change their order, or `bottom`. Never less than `thinnest` below `top`.
-///
-/// `active` is sorted by x at the top. Neighbours that cross right there are swapped, so that each meets its
-/// neighbours below the crossing.
-fn first_crossing(active: &mut [Crossing], top: i32, bottom: i32, thinnest: i32) -> i32 {
-    let mut cut = bottom;
-    let mut index = 0;
-    // Each swap mends the order at the bottom: there are no more swaps than crossings. Where there are very many, what
-    // is left of them shows no more.
-    let mut swaps_left = SWAPS_PER_EDGE * active.len();
-    while let Some([a, b]) = active.get_mut(index..).and_then(|rest| rest.first_chunk_mut()) {
-        let (apart, past) = (i64::from(b.top_x - a.top_x), i64::from(a.bottom_x - b.bottom_x));
-        if past > i64::from(NEAR) {
-            if apart <= i64::from(NEAR) && swaps_left > 0 {
-                swaps_left -= 1;
-                std::mem::swap(a, b);
-                index = index.saturating_sub(1);
+/// Lists for each row the clusters with the windings left of them, and the pixels with their sums.
+#[inline(always)]
+fn list_pixels<S: Simd>(simd: S, cells: &mut StripCells<'_>, rows: &mut [Row; BLOCK_HEIGHT]) {
+    let mut sum = i32x8::splat(simd, 0);
+    let (mut left, mut before) = (0, usize::MAX);
+    let StripCells { columns, marks, occupied, wide } = cells;
+    let (mut wide_sum, mut wide_end) = ([0_i64; BLOCK_HEIGHT], 0);
+    for_occupied(occupied, |block| {
+        if block != before.wrapping_add(1) {
+            left = 0;
+        }
+        before = block;
+        let start = (block * BLOCK_WIDTH) as i32;
+        for (column, (cell, marks)) in (start..).zip(block_of(columns, block).iter().zip(block_of(marks, block))) {
+            let old = sum;
+            sum += i32x8::load_array_ref(simd, cell);
+            if marks.cluster == 0 {
+                left = 0;
                 continue;
             }
-            let apart = apart.max(0);
-            cut = cut.min(top + (i64::from(bottom - top) * apart / (apart + past)) as i32);
+            let starts = marks.cluster & !left;
+            left = marks.cluster;
+            if starts != 0 {
+                let windings = old.to_array();
+                while wide_end < column as usize
+                    && let Some(values) = wide.get(wide_end)
+                {
+                    for (sum, value) in wide_sum.iter_mut().zip(values) {
+                        *sum += value;
+                    }
+                    wide_end += 1;
+                }
+                for_rows(starts, rows, |row, index| {
+                    let at = |lanes: &[i32; 8]| i64::from(lanes.get(index).copied().unwrap_or(0));
+                    let sum = if wide.is_empty() { at(&windings) } else { wide_sum.get(index).copied().unwrap_or(0) };
+                    row.clusters.push((column, (sum >> FULL.ilog2()) as i32));
+                });
+            }
+            if marks.twice != 0 {
+                let sums = sum.to_array();
+                for_rows(marks.twice, rows, |row, index| {
+                    row.pixels.push((column, sums.get(index).copied().unwrap_or(0)));
+                });
+            }
         }
-        index += 1;
-    }
-    cut.max(top + thinnest).min(bottom)
+    });
 }
 
-/// Accumulates the edges of a slab that separate inside from outside.
-fn add_slab(cells: &mut StripCells<'_>, row: usize, active: &mut [Crossing], top: i32, bottom: i32, rule: FillRule) {
-    active.sort_unstable_by_key(|c| i64::from(c.top_x) + i64::from(c.bottom_x));
-    let mut around = 0_i32;
-    for crossing in active.iter() {
-        let was = inside(around, rule);
-        around = around.wrapping_add(crossing.winding);
-        let is = inside(around, rule);
-        if was != is {
-            let dy = bottom - top;
-            cells.add_row_piece(row, crossing.top_x, crossing.bottom_x, if is { dy } else { -dy });
+#[inline(always)]
+fn for_rows(mut bits: u8, rows: &mut [Row; BLOCK_HEIGHT], mut f: impl FnMut(&mut Row, usize)) {
+    while bits != 0 {
+        let index = bits.trailing_zeros() as usize;
+        bits &= bits - 1;
+        if let Some(row) = rows.get_mut(index) {
+            f(row, index);
         }
     }
+}
+
+/// Lists the parts of an edge that lie in clusters of the strip at `top`.
+#[inline(always)]
+fn gather<S: Simd>(simd: S, cells: &StripCells<'_>, edge: &Edge, top: i32, rows: &mut [Row; BLOCK_HEIGHT]) {
+    let (_, y0, _, y1, winding) = edge.downward();
+    if y1 <= top || y0 >= top + (1 << STRIP_SHIFT) || y0 == y1 {
+        return;
+    }
+    for_strip_parts(
+        *edge,
+        top,
+        1,
+        #[inline(always)]
+        |_, start, end| {
+            let (first, last) = RowParts::<S>::columns(start, end);
+            let within = cells.marks.get(first..=last).unwrap_or(&[]);
+            let mut found = 0;
+            for marks in within {
+                found |= marks.cluster;
+            }
+            if found == 0 {
+                return;
+            }
+            let parts = RowParts::new(simd, start, end, winding, top, first);
+            let (left, right) = (parts.left.to_array(), parts.right.to_array());
+            let (upper, lower) = (parts.upper.to_array(), parts.lower.to_array());
+            let y = start.1 - top;
+            for_rows(found, rows, |row, index| {
+                let at = |lanes: &[i32; 8]| lanes.get(index).copied().unwrap_or(0);
+                let column = |lanes: &[f32; 8]| (lanes.get(index).copied().unwrap_or(0.0) * (1.0 / 256.0)) as usize;
+                let (from, to) = (column(&left), column(&right));
+                let reaches = within.get(from..=to.max(from)).unwrap_or(&[]);
+                let bit = 1 << index;
+                if at(&lower) > at(&upper) && reaches.iter().any(|marks| marks.cluster & bit != 0) {
+                    let row_top = index as i32 * fixed::ONE;
+                    let (y0, y1) = (at(&upper) + y - row_top, at(&lower) + y - row_top);
+                    row.parts.push(Part {
+                        first: (first + from) as i32,
+                        last: (first + to) as i32,
+                        x: parts.start + (row_top - y) as f32 * parts.slope,
+                        base: first as i32,
+                        slope: parts.slope,
+                        y0,
+                        y1,
+                        winding,
+                    });
+                }
+            });
+        },
+    );
+}
+
+/// The parts in the pixel in work, and what lies left of it.
+#[derive(Debug, Default)]
+struct Window {
+    parts: Vec<Part>,
+    /// The winding at the top of the pixel's left side, and how it changes further down: (y, difference).
+    winding: i32,
+    changes: Vec<(i32, i32)>,
+    slabs: Slabs,
+    /// Of one scanline: where it is crossed, and by what winding.
+    crossings: Vec<(f32, i32)>,
+}
+
+impl Window {
+    /// Starts a cluster.
+    fn start(&mut self, winding: i32) {
+        self.parts.clear();
+        self.changes.clear();
+        self.winding = winding;
+    }
+
+    /// Moves on to the pixel in `column`: parts that end left of it wind around it.
+    #[inline(always)]
+    fn advance(&mut self, column: i32) {
+        let mut index = 0;
+        while let Some(part) = self.parts.get(index).copied() {
+            if part.last >= column {
+                index += 1;
+                continue;
+            }
+            self.parts.swap_remove(index);
+            self.change(part.y0, part.winding);
+            self.change(part.y1, -part.winding);
+        }
+    }
+
+    #[inline(always)]
+    fn change(&mut self, y: i32, winding: i32) {
+        if y <= 0 {
+            self.winding += winding;
+        } else if y < fixed::ONE {
+            if let Some(index) = self.changes.iter().position(|(other, _)| *other == y) {
+                let Some((_, sum)) = self.changes.get_mut(index) else { return };
+                *sum += winding;
+                if *sum == 0 {
+                    self.changes.swap_remove(index);
+                }
+            } else {
+                self.changes.push((y, winding));
+            }
+        }
+    }
+
+    /// Whether the sum of areas is right all the same: where the rule is linear between the lowest and the highest winding
+    /// that the pixel can have, or where two parts that wind against each other run side by side.
+    #[inline(always)]
+    fn is_summed(&self, rule: FillRule) -> bool {
+        let (mut low, mut high) = (self.winding, self.winding);
+        for winding in self.changes.iter().map(|(_, sum)| *sum).chain(self.parts.iter().map(|part| part.winding)) {
+            if winding < 0 {
+                low = low.saturating_add(winding);
+            } else {
+                high = high.saturating_add(winding);
+            }
+        }
+        let is_linear = match rule {
+            FillRule::EvenOdd => high - low <= 1,
+            FillRule::NonZero => low >= 0 && high <= 1 || low >= -1 && high <= 0 || low > 0 || high < 0,
+        };
+        if is_linear {
+            return true;
+        }
+        let [a, b] = &self.parts[..] else { return false };
+        let side = |y: i32| (a.x - b.x) + ((a.base - b.base) * fixed::ONE) as f32 + (a.slope - b.slope) * y as f32;
+        self.changes.is_empty()
+            && a.winding == -b.winding
+            && (a.y0, a.y1) == (b.y0, b.y1)
+            && side(a.y0) * side(a.y1) >= 0.0
+    }
+}
+
+/// The heights between which nothing begins or ends, in 1/256 pixel.
+#[derive(Debug, Default)]
+struct Slabs {
+    cuts: Vec<i32>,
+}
+
+impl Slabs {
+    fn cut(&mut self, parts: &[Part], changes: &[(i32, i32)]) {
+        self.cuts.clear();
+        self.cuts.extend([0, fixed::ONE]);
+        let ends = parts.iter().flat_map(|part| [part.y0, part.y1]);
+        for y in changes.iter().map(|(y, _)| *y).chain(ends) {
+            if y > 0 && y < fixed::ONE && !self.cuts.contains(&y) {
+                self.cuts.push(y);
+                if self.cuts.len() > MOST_SLABS {
+                    self.cuts.clear();
+                    self.cuts.extend((0..=EVEN_SLABS).map(|i| i * fixed::ONE / EVEN_SLABS));
+                    return;
+                }
+            }
+        }
+        self.cuts.sort_unstable();
+    }
+}
+
+/// Resolves the pixels of a row, whose parts are sorted by their first column.
+#[inline(always)]
+fn resolve_row<S: Simd>(simd: S, columns: &mut [Column], index: usize, row: &Row, rule: FillRule, window: &mut Window) {
+    let mut parts = &row.parts[..];
+    let mut clusters = &row.clusters[..];
+    for (column, sum) in &row.pixels {
+        while let [(start, winding), rest @ ..] = clusters
+            && start <= column
+        {
+            window.start(*winding);
+            clusters = rest;
+            while let [part, rest @ ..] = parts
+                && part.last < *start
+            {
+                parts = rest;
+            }
+        }
+        while let [part, rest @ ..] = parts
+            && part.first <= *column
+        {
+            window.parts.push(*part);
+            parts = rest;
+        }
+        window.advance(*column);
+        if window.is_summed(rule) {
+            continue;
+        }
+        let covered = match rule {
+            FillRule::NonZero => coverage::<S, false>(simd, window, *column),
+            FillRule::EvenOdd => coverage::<S, true>(simd, window, *column),
+        };
+        let covered = covered.unwrap_or_else(|| crowded_coverage(window, *column, rule));
+        if let Some([here, next]) = columns.get_mut(*column as usize..).and_then(|rest| rest.first_chunk_mut::<2>())
+            && let (Some(here), Some(next)) = (here.get_mut(index), next.get_mut(index))
+        {
+            *here = here.wrapping_add(covered - sum);
+            *next = next.wrapping_sub(covered - sum);
+        }
+    }
+}
+
+/// The covered area of the pixel in `column`, in 1/[`FULL`]; `None` if too many parts cross a scanline.
+#[inline(always)]
+fn coverage<S: Simd, const EVEN_ODD: bool>(simd: S, window: &mut Window, column: i32) -> Option<i32> {
+    let Window { parts, winding, changes, slabs, .. } = window;
+    slabs.cut(parts, changes);
+    let is_flat = parts.iter().any(|part| part.slope.abs() > FLAT);
+    let finer = if is_flat { FINER } else { 1 };
+    let zero = f32x8::splat(simd, 0.0);
+    let side = f32x8::splat(simd, 256.0);
+    // The middles of eight equal parts.
+    let middles = f32x8::simd_from(simd, [0.0625, 0.1875, 0.3125, 0.4375, 0.5625, 0.6875, 0.8125, 0.9375]);
+    let is_inside = |around: i32x8<S>| {
+        let residue = if EVEN_ODD { around & 1 } else { around };
+        residue.simd_eq(i32x8::splat(simd, 0))
+    };
+    let mut area = 0.0;
+    for pair in slabs.cuts.windows(2) {
+        let [top, bottom] = *pair else { break };
+        let middle = top + (bottom - top) / 2;
+        let around = *winding + changes.iter().map(|(y, sum)| if *y <= middle { *sum } else { 0 }).sum::<i32>();
+        let mut height = (bottom - top) as f32;
+        let mut start = top as f32;
+        let finer = if bottom - top > 8 { finer } else { 1 };
+        height /= finer as f32;
+        for _ in 0..finer {
+            let y = middles * height + start;
+            start += height;
+            // Where the scanlines are crossed, in order, and by what winding: each new crossing sinks to its place.
+            let mut places = [side; MOST_CROSSINGS];
+            let mut windings = [i32x8::splat(simd, 0); MOST_CROSSINGS];
+            let mut count = 0;
+            for part in parts.iter() {
+                if part.y0 > middle || middle >= part.y1 {
+                    continue;
+                }
+                if count == MOST_CROSSINGS {
+                    return None;
+                }
+                let offset = part.x + ((part.base - column) * fixed::ONE) as f32;
+                let mut place = min_f32(max_f32(y * part.slope + offset, zero), side);
+                let mut crossing = i32x8::splat(simd, part.winding);
+                for (other, winding) in places.iter_mut().zip(&mut windings).take(count) {
+                    let before = place.simd_lt(*other);
+                    let (p, w) = (before.select(*other, place), before.select(*winding, crossing));
+                    (*other, *winding) = (before.select(place, *other), before.select(crossing, *winding));
+                    (place, crossing) = (p, w);
+                }
+                if let (Some(other), Some(winding)) = (places.get_mut(count), windings.get_mut(count)) {
+                    (*other, *winding) = (place, crossing);
+                }
+                count += 1;
+            }
+            let mut around = i32x8::splat(simd, around);
+            let (mut inside, mut at) = (zero, zero);
+            for (place, winding) in places.iter().zip(&windings).take(count) {
+                inside += is_inside(around).select(zero, *place - at);
+                around += *winding;
+                at = *place;
+            }
+            inside += is_inside(around).select(zero, side - at);
+            let mut sum = 0.0;
+            for lane in inside.to_array() {
+                sum += lane;
+            }
+            area += sum * height;
+        }
+    }
+    // Of eight lanes, 256 wide and 256 high in all.
+    Some((area * (FULL as f32 / (8.0 * 65_536.0)) + 0.5) as i32)
+}
+
+/// The covered area of a pixel with any number of parts, in 1/[`FULL`].
+#[inline(never)]
+fn crowded_coverage(window: &mut Window, column: i32, rule: FillRule) -> i32 {
+    const SCANLINES: i32 = 16;
+    let Window { parts, winding, changes, crossings, .. } = window;
+    let mut area = 0.0;
+    for scanline in 0..SCANLINES {
+        let y = (2 * scanline + 1) * fixed::ONE / (2 * SCANLINES);
+        crossings.clear();
+        crossings.extend(parts.iter().filter(|part| part.y0 <= y && y < part.y1).map(|part| {
+            let x = part.x + ((part.base - column) * fixed::ONE) as f32 + part.slope * y as f32;
+            (x.clamp(0.0, 256.0), part.winding)
+        }));
+        crossings.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        let mut around = *winding + changes.iter().map(|(from, sum)| if *from <= y { *sum } else { 0 }).sum::<i32>();
+        let mut at = 0.0;
+        for (x, winding) in crossings.iter().chain(std::iter::once(&(256.0, 0))) {
+            if inside(around, rule) {
+                area += x - at;
+            }
+            around = around.wrapping_add(*winding);
+            at = *x;
+        }
+    }
+    (area * (FULL as f32 / (256 * SCANLINES) as f32) + 0.5) as i32
 }

@@ -15,10 +15,13 @@
 //! assert_eq!(grid, [*b"##......", *b"..####..", *b"......##"]);
 //! ```
 
+pub(crate) mod bins;
 pub(crate) mod cell;
 pub mod circle;
+mod cut;
 pub(crate) mod edge;
 pub(crate) mod exact;
+pub(crate) mod kernel;
 pub mod line;
 pub mod polygon;
 pub(crate) mod sample;

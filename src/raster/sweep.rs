@@ -1,9 +1,11 @@
 //! The sweep: accumulated cells to coverage, block by block, by the fill rule.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::{f32x8, f64x2, i32x8, u8x16};
 
 use super::cell::{FULL, StripCells};
+use crate::geom::FixedRect;
+use crate::num::fixed;
 use crate::num::lanes::{min_i32, truncate_f32};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
 
@@ -84,7 +86,6 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
 ) {
     let mut cover = i32x8::splat(simd, 0);
     let mut done = 0;
-    let mut mask: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
     for word_index in 0..cells.occupied.len() {
         let Some(word) = cells.occupied.get_mut(word_index) else { break };
         let mut bits = core::mem::take(word);
@@ -113,27 +114,89 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
                 done = index + 1;
                 continue;
             }
-            let mut quads = [[0_i32; BLOCK_HEIGHT]; 4];
-            for (quad, columns) in quads.iter_mut().zip(columns.as_chunks_mut::<4>().0) {
-                let mut packed = i32x8::splat(simd, 0);
+            let mut quads = [i32x8::splat(simd, 0); 4];
+            for (packed, columns) in quads.iter_mut().zip(columns.as_chunks_mut::<4>().0) {
                 for (shift, column) in columns.iter_mut().enumerate() {
                     cover += i32x8::load_array_ref(simd, column);
                     *column = [0; BLOCK_HEIGHT];
-                    packed |= coverage(cover) << (8 * shift as u32);
-                }
-                packed.store_array(quad);
-            }
-            for (row, out) in mask.iter_mut().enumerate() {
-                for (quad, out) in quads.iter().zip(out.as_chunks_mut::<4>().0) {
-                    *out = quad.get(row).copied().unwrap_or(0).to_le_bytes();
+                    *packed |= coverage(cover) << (8 * shift as u32);
                 }
             }
+            let mask = transposed(simd, quads);
             sink.block(simd, index, &mask);
             done = index + 1;
         }
     }
     if done < blocks {
         uniform(simd, coverage(cover), done, blocks, sink);
+    }
+}
+
+/// Rows of 16 bytes from four vectors of 8 rows, 4 bytes each: in each half of four rows, a 4 × 4 transpose.
+#[inline(always)]
+fn transposed<S: Simd>(simd: S, [a, b, c, d]: [i32x8<S>; 4]) -> MaskBlock {
+    let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
+    let ((a0, a1), (b0, b1), (c0, c1), (d0, d1)) = (a.split(), b.split(), c.split(), d.split());
+    let (upper, lower) = mask.split_at_mut(4);
+    for (rows, [a, b, c, d]) in [(upper, [a0, b0, c0, d0]), (lower, [a1, b1, c1, d1])] {
+        let pairs = [(a.zip_low(b), c.zip_low(d)), (a.zip_high(b), c.zip_high(d))];
+        for (rows, (left, right)) in rows.as_chunks_mut::<2>().0.iter_mut().zip(pairs) {
+            let (left, right): (f64x2<S>, f64x2<S>) = (left.bitcast(), right.bitcast());
+            let [first, second] = rows;
+            u8x16::store_array(left.zip_low(right).bitcast(), first);
+            u8x16::store_array(left.zip_high(right).bitcast(), second);
+        }
+    }
+    let _ = simd;
+    mask
+}
+
+/// Reports the coverage of a rectangle in one strip, whose top is at `top` (fixed point), in blocks `..blocks`: as the
+/// sweep of its edges would.
+#[inline(always)]
+pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top: i32, blocks: usize, sink: &mut K) {
+    /// Fraction bits of a block's side.
+    const BLOCK_SHIFT: u32 = fixed::SHIFT + BLOCK_WIDTH.ilog2();
+    /// The part of 256 that lies between two positions, for as many pixels from `start` on as there are.
+    #[inline(always)]
+    fn parts<const N: usize>(start: i32, low: i32, high: i32) -> [u32; N] {
+        let mut parts = [0; N];
+        for (pixel, part) in (start..).step_by(fixed::ONE as usize).zip(&mut parts) {
+            *part = (high.min(pixel + fixed::ONE) - low.max(pixel)).max(0) as u32;
+        }
+        parts
+    }
+    let (left, right) = (rect.left.max(0), rect.right.min((blocks as i32) << BLOCK_SHIFT));
+    if left >= right || rect.top >= top + ((BLOCK_HEIGHT as i32) << fixed::SHIFT) || rect.bottom <= top {
+        return;
+    }
+    let heights: [u32; BLOCK_HEIGHT] = parts(top, rect.top, rect.bottom);
+    let mut rows = [0; BLOCK_HEIGHT];
+    for (row, height) in rows.iter_mut().zip(heights) {
+        *row = ((height * 255 + 128) >> 8) as u8;
+    }
+    let (first, last) = ((left >> BLOCK_SHIFT) as usize, ((right - 1) >> BLOCK_SHIFT) as usize);
+    let edge_block = |index: usize| -> MaskBlock {
+        let widths: [u32; BLOCK_WIDTH] = parts((index as i32) << BLOCK_SHIFT, left, right);
+        let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
+        for (row, height) in mask.iter_mut().zip(heights) {
+            for (value, width) in row.iter_mut().zip(widths) {
+                *value = ((height * width * 255 + (1 << 15)) >> 16) as u8;
+            }
+        }
+        mask
+    };
+    let whole = |index: usize| left <= (index as i32) << BLOCK_SHIFT && right >= (index as i32 + 1) << BLOCK_SHIFT;
+    let start = if whole(first) { first } else { first + 1 };
+    let end = if whole(last) { last + 1 } else { last };
+    if start > first && sink.wants(first) {
+        sink.block(simd, first, &edge_block(first));
+    }
+    if start < end {
+        sink.run(simd, start, end, &rows);
+    }
+    if end <= last && (last > first || start == first) && sink.wants(last) {
+        sink.block(simd, last, &edge_block(last));
     }
 }
 

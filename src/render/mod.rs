@@ -6,7 +6,12 @@
 
 mod band;
 mod clip;
+mod clip_cache;
+mod coverage;
+mod hidden;
+mod layer;
 mod occlusion;
+mod painter;
 mod plan;
 mod prepare;
 mod settings;

@@ -7,7 +7,7 @@
 use fearless_simd::Simd;
 
 use crate::geom::IntRect;
-use crate::raster::cell::Reach;
+use crate::raster::kernel::Reach;
 use crate::raster::sweep::BlockSink;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
 
@@ -56,15 +56,25 @@ impl Occlusion {
     /// The first and the end of the blocks of `bounds` (device pixels) in a strip between which all that are
     /// visible lie; empty if none is.
     pub(super) fn visible(&self, strip: usize, bounds: IntRect) -> (usize, usize) {
-        let mut first = bounds.left.max(0) as usize / BLOCK_WIDTH;
-        let mut end = (bounds.right.max(0) as usize).div_ceil(BLOCK_WIDTH);
-        while first < end && self.is_hidden(strip, first) {
-            first += 1;
+        let first = bounds.left.max(0) as usize / BLOCK_WIDTH;
+        let end = (bounds.right.max(0) as usize).div_ceil(BLOCK_WIDTH);
+        let words = self.hidden.get(strip * self.words..(strip + 1) * self.words).unwrap_or(&[]);
+        let (mut seen_first, mut seen_end) = (end, end);
+        let mut any = false;
+        for (index, word) in words.iter().enumerate().take(end.div_ceil(64)).skip(first / 64) {
+            let start = index * 64;
+            let low = u64::MAX << first.saturating_sub(start).min(63);
+            let high = u64::MAX >> (start + 64).saturating_sub(end).min(63);
+            let visible = !word & low & high;
+            if visible != 0 {
+                if !any {
+                    seen_first = start + visible.trailing_zeros() as usize;
+                    any = true;
+                }
+                seen_end = start + 64 - visible.leading_zeros() as usize;
+            }
         }
-        while first < end && self.is_hidden(strip, end - 1) {
-            end -= 1;
-        }
-        (first, end)
+        (seen_first, seen_end)
     }
 
     /// The shape at place `order` is about to be painted.

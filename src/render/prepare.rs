@@ -9,14 +9,18 @@ use crate::display_list::{ClipKind, Command, DisplayList, Geometry};
 use crate::geom::{IntRect, Point, Rect};
 use crate::num::level::{SimdLevel, dispatch};
 use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
+use crate::path::polygons::Polygons;
 use crate::path::stroke::{StrokeScratch, stroke};
-use crate::raster::edge::{BandList, EdgeBins, EdgeSink};
+use crate::raster::bins::{BandItem, BandList, EdgeBins, Edges};
+use crate::style::Antialias;
 
 /// The edges of a range of commands. Chunks are prepared independently of each other; a band reads them
 /// one after another.
 #[derive(Debug, Default)]
 pub(crate) struct Chunk {
     bins: EdgeBins,
+    /// The shape in work.
+    polygons: Polygons,
     stroke: StrokeScratch,
 }
 
@@ -35,6 +39,11 @@ impl Chunk {
     /// What the chunk has for band `index`.
     pub(super) fn band(&self, index: usize) -> Option<&BandList> {
         self.bins.band(index)
+    }
+
+    /// The edges of one of its items.
+    pub(super) fn edges<'a>(&'a self, band: &'a BandList, item: BandItem) -> Edges<'a> {
+        self.bins.edges(band, item)
     }
 
     /// Lists the edges of `range` of the list's commands.
@@ -59,22 +68,24 @@ impl Chunk {
             let Some(command) = list.commands.get(index) else { break };
             let number = index as u32;
             match command {
-                Command::Draw(draw) => self.shape(simd, list, number, &draw.geometry, draw.bounds, frame),
+                Command::Draw(draw) => {
+                    self.shape(simd, list, number, &draw.geometry, draw.antialias, draw.bounds, frame)
+                }
                 Command::Clip(id) => {
                     if let Some(clip) = list.clip(*id)
-                        && let ClipKind::Geometry { geometry, .. } = &clip.kind
+                        && let ClipKind::Geometry { geometry, antialias } = &clip.kind
                     {
-                        self.shape(simd, list, number, geometry, clip.bounds, frame);
+                        self.shape(simd, list, number, geometry, *antialias, clip.bounds, frame);
                     }
                 }
                 Command::BeginLayer(layer) => self.bins.list(number, layer.bounds.intersect(frame)),
-                Command::EndLayer(layer) => self.shape(simd, list, number, &Geometry::Bounds, layer.bounds, frame),
+                Command::EndLayer(layer) => self.bins.list(number, layer.bounds.intersect(frame)),
                 Command::BeginMask(bounds) | Command::EndMask(bounds, _) => {
                     self.bins.list(number, bounds.intersect(frame));
                 }
                 Command::Effect(_) => {
                     if let Some(picture) = plan.picture(number) {
-                        self.shape(simd, list, number, &Geometry::Bounds, picture.bounds, frame);
+                        self.bins.list(number, picture.bounds.intersect(frame));
                     }
                 }
             }
@@ -82,12 +93,14 @@ impl Chunk {
     }
 
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "a command's facts, from the only place that knows them")]
     fn shape<S: Simd>(
         &mut self,
         simd: S,
         list: &DisplayList,
         number: u32,
         geometry: &Geometry,
+        antialias: Antialias,
         bounds: IntRect,
         frame: IntRect,
     ) {
@@ -95,29 +108,35 @@ impl Chunk {
         if bounds.is_empty() {
             return;
         }
-        if let Geometry::Spans(_) = geometry {
-            self.bins.list(number, bounds);
-            return;
-        }
-        self.bins.begin(number, bounds);
-        let mut sink = EdgeSink::new(&mut self.bins, bounds, bounds.right >= frame.right);
+        self.polygons.clear();
         match geometry {
             Geometry::Fill { verbs, points, transform, .. } => {
                 let (verbs, points) = list.outline(*verbs, *points);
-                flatten_fill(simd, verbs, points, *transform, &mut sink);
+                flatten_fill(simd, verbs, points, *transform, &mut self.polygons);
             }
             Geometry::Stroke { verbs, points, transform, style } => {
                 let (verbs, points) = list.outline(*verbs, *points);
                 if let Some(style) = list.strokes.get(*style as usize) {
                     let visible = bounds.to_rect();
-                    stroke(verbs, points, style, *transform, TOLERANCE, visible, &mut self.stroke, &mut sink);
+                    stroke(verbs, points, style, *transform, TOLERANCE, visible, &mut self.stroke, &mut self.polygons);
                 }
             }
-            Geometry::Bounds => rectangle(bounds.to_rect(), &mut sink),
-            Geometry::Spans(_) => {}
+            // What has no slanted edges is covered without a list of them, unless it is sampled.
+            Geometry::Rect(rect) if !is_exact(antialias) => {
+                rectangle(rect.intersect(bounds).to_rect(), &mut self.polygons);
+            }
+            Geometry::Rect(_) | Geometry::Bounds | Geometry::Spans(_) => {
+                self.bins.list(number, bounds);
+                return;
+            }
         }
-        self.bins.end(bounds);
+        self.bins.add(simd, number, &self.polygons, bounds, bounds.right >= frame.right);
     }
+}
+
+/// Whether coverage is area, not a count of samples.
+pub(super) fn is_exact(antialias: Antialias) -> bool {
+    matches!(antialias, Antialias::Analytic | Antialias::Exact)
 }
 
 fn rectangle<K: PolygonSink>(rect: Rect, sink: &mut K) {

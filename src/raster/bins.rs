@@ -1,0 +1,423 @@
+//! Edges listed by band.
+
+use fearless_simd::f32x8;
+use fearless_simd::prelude::*;
+
+use super::cut::Cutter;
+use super::edge::{Edge, FixedPoint};
+use crate::geom::{IntRect, Point};
+use crate::num::fixed;
+use crate::num::lanes::{max_f32, min_f32, truncate_f32};
+use crate::path::polygons::Polygons;
+
+/// One draw's edges in one band: `edges[start..end]` of the band belong to command `command`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BandItem {
+    pub(crate) command: u32,
+    start: u32,
+    end: u32,
+}
+
+/// What one band has to draw, in the order of the commands.
+#[derive(Debug, Default)]
+pub(crate) struct BandList {
+    /// Each names the point at which an edge starts; it ends at the next point.
+    edges: Vec<u32>,
+    pub(crate) items: Vec<BandItem>,
+}
+
+/// Corners of outlines, and for each band of a frame the edges between them that touch it.
+#[derive(Debug, Default)]
+pub(crate) struct EdgeBins {
+    points: Vec<FixedPoint>,
+    bands: Vec<BandList>,
+    /// log2 of a band's height in 1/256 pixel.
+    band_shift: u32,
+}
+
+/// The edges of one draw in one band.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Edges<'a> {
+    points: &'a [FixedPoint],
+    starts: &'a [u32],
+}
+
+impl Edges<'_> {
+    /// How many edges there are; some may be horizontal.
+    pub(crate) fn len(self) -> usize {
+        self.starts.len()
+    }
+
+    /// The edges in the order of their outline. Those that lie along a scanline are left out.
+    #[inline(always)]
+    pub(crate) fn for_each(self, mut f: impl FnMut(Edge)) {
+        self.for_all(
+            #[inline(always)]
+            |edge| {
+                if edge.y0 != edge.y1 {
+                    f(edge);
+                }
+            },
+        );
+    }
+
+    /// As [`for_each`](Self::for_each), with those that lie along a scanline.
+    #[inline(always)]
+    pub(crate) fn for_all(self, mut f: impl FnMut(Edge)) {
+        for start in self.starts {
+            if let Some([from, to]) = self.points.get(*start as usize..).and_then(|rest| rest.first_chunk::<2>()) {
+                f(Edge { x0: from.x, y0: from.y, x1: to.x, y1: to.y });
+            }
+        }
+    }
+
+    /// At most `size` edges at a time.
+    pub(crate) fn chunks(self, size: usize) -> impl Iterator<Item = Self> {
+        self.starts.chunks(size).map(move |starts| Self { starts, ..self })
+    }
+}
+
+impl EdgeBins {
+    /// Empties the bins and sets them up for bands of `1 << height_shift` rows.
+    pub(crate) fn reset(&mut self, bands: usize, height_shift: u32) {
+        self.band_shift = height_shift + fixed::SHIFT;
+        self.points.clear();
+        for band in &mut self.bands {
+            band.edges.clear();
+            band.items.clear();
+        }
+        self.bands.resize_with(bands, BandList::default);
+    }
+
+    /// What was listed for band `index`.
+    pub(crate) fn band(&self, index: usize) -> Option<&BandList> {
+        self.bands.get(index)
+    }
+
+    /// The edges of one of a band's items.
+    pub(crate) fn edges<'a>(&'a self, band: &'a BandList, item: BandItem) -> Edges<'a> {
+        let starts = band.edges.get(item.start as usize..item.end as usize).unwrap_or(&[]);
+        Edges { points: &self.points, starts }
+    }
+
+    /// Lists `command`, which has no edges, for every band that `bounds` (device pixels) touches.
+    pub(crate) fn list(&mut self, command: u32, bounds: IntRect) {
+        for band in self.bands_of(bounds.top << fixed::SHIFT, bounds.bottom << fixed::SHIFT) {
+            let end = band.edges.len() as u32;
+            band.items.push(BandItem { command, start: end, end });
+        }
+    }
+
+    /// Lists the edges of `polygons` within `clip` (device pixels) as those of `command`, for the bands that they touch.
+    /// `open_right` says that no pixel right of `clip` can be drawn.
+    #[inline(always)]
+    pub(crate) fn add<S: Simd>(&mut self, simd: S, command: u32, polygons: &Polygons, clip: IntRect, open_right: bool) {
+        match extent(simd, polygons.points()) {
+            Some([left, top, right, bottom])
+                if left >= clip.left as f32
+                    && top >= clip.top as f32
+                    && right <= clip.right as f32
+                    && bottom <= clip.bottom as f32 =>
+            {
+                self.add_inside(simd, command, polygons, fixed::from_f32(top), fixed::from_f32(bottom));
+            }
+            _ => self.add_cut(command, polygons, clip, open_right),
+        }
+    }
+
+    /// Lists polygons that lie between `top` and `bottom` (fixed point) and need no clipping.
+    #[inline(always)]
+    fn add_inside<S: Simd>(&mut self, simd: S, command: u32, polygons: &Polygons, top: i32, bottom: i32) {
+        if top == bottom || u32::try_from(self.points.len() + 2 * polygons.points().len()).is_err() {
+            return;
+        }
+        let first = self.points.len();
+        let (first_band, last_band) = (top >> self.band_shift, (bottom - 1) >> self.band_shift);
+        let Some(bands) = self.bands.get_mut(first_band as usize..=last_band as usize) else { return };
+        for band in bands.iter_mut() {
+            let start = band.edges.len() as u32;
+            band.items.push(BandItem { command, start, end: start });
+        }
+        for polygon in polygons.iter() {
+            let start = self.points.len();
+            append_fixed(simd, polygon, &mut self.points);
+            if let Some(back) = self.points.get(start) {
+                self.points.push(*back);
+            }
+            let end = self.points.len() as u32;
+            if let [band] = bands {
+                band.edges.extend(start as u32..end.saturating_sub(1));
+            } else {
+                list_by_band(bands, &self.points, start, first_band << self.band_shift, self.band_shift);
+            }
+        }
+        let mut empty = true;
+        for band in bands {
+            empty &= close_item(band);
+        }
+        if empty {
+            self.points.truncate(first);
+        }
+    }
+
+    /// Lists polygons that may leave the clip.
+    #[inline(never)]
+    fn add_cut(&mut self, command: u32, polygons: &Polygons, clip: IntRect, open_right: bool) {
+        let Self { points, bands, band_shift } = self;
+        let Some(bands) = touched(bands, clip.top << fixed::SHIFT, clip.bottom << fixed::SHIFT, *band_shift) else {
+            return;
+        };
+        let first_top = (clip.top.max(0) << fixed::SHIFT) >> *band_shift << *band_shift;
+        for band in bands.iter_mut() {
+            let start = band.edges.len() as u32;
+            band.items.push(BandItem { command, start, end: start });
+        }
+        let mut cutter = Cutter::new(
+            clip,
+            open_right,
+            #[inline(always)]
+            |edge| {
+                if u32::try_from(points.len() + 2).is_ok() {
+                    let start = points.len();
+                    points.push(FixedPoint { x: edge.x0, y: edge.y0 });
+                    points.push(FixedPoint { x: edge.x1, y: edge.y1 });
+                    list_by_band(bands, points, start, first_top, *band_shift);
+                }
+            },
+        );
+        polygons.iter().for_each(|polygon| cutter.polygon(polygon));
+        for band in bands {
+            close_item(band);
+        }
+    }
+
+    fn bands_of(&mut self, top: i32, bottom: i32) -> &mut [BandList] {
+        touched(&mut self.bands, top, bottom, self.band_shift).unwrap_or(&mut [])
+    }
+}
+
+/// The bands between `top` and `bottom` (fixed point).
+fn touched(bands: &mut [BandList], top: i32, bottom: i32, band_shift: u32) -> Option<&mut [BandList]> {
+    let top = top.max(0);
+    if top >= bottom {
+        return None;
+    }
+    let last = ((bottom - 1) >> band_shift) as usize + 1;
+    let last = last.min(bands.len());
+    bands.get_mut((top >> band_shift) as usize..last)
+}
+
+/// Ends the band's last item; drops it if it has no edges, and says whether it has none.
+#[inline(always)]
+fn close_item(band: &mut BandList) -> bool {
+    let end = band.edges.len() as u32;
+    let Some(item) = band.items.last_mut() else { return true };
+    item.end = end;
+    let empty = item.start == end;
+    if empty {
+        band.items.pop();
+    }
+    empty
+}
+
+/// Lists the edges between the points from `start` on for each of `bands` that they touch; the first band's top is
+/// at `first_top`.
+#[inline(always)]
+fn list_by_band(bands: &mut [BandList], points: &[FixedPoint], start: usize, first_top: i32, band_shift: u32) {
+    for (index, pair) in (start as u32..).zip(points.get(start..).unwrap_or(&[]).windows(2)) {
+        let [from, to] = pair else { break };
+        let (low, high) = if from.y < to.y { (from.y, to.y) } else { (to.y, from.y) };
+        // Horizontal edges are of their row's band: for exact coverage they matter.
+        let first = ((low - first_top) >> band_shift) as usize;
+        let last = ((high.max(low + 1) - 1 - first_top) >> band_shift) as usize;
+        if first == last {
+            if let Some(band) = bands.get_mut(first) {
+                band.edges.push(index);
+            }
+        } else if let Some(bands) = bands.get_mut(first..=last) {
+            for band in bands {
+                band.edges.push(index);
+            }
+        }
+    }
+}
+
+/// The smallest and greatest x and y of some points, as left, top, right, bottom; `None` if there is no point, or one
+/// that is not finite.
+#[inline(always)]
+fn extent<S: Simd>(simd: S, points: &[Point]) -> Option<[f32; 4]> {
+    let first = *points.first()?;
+    let start = f32x8::load_array(simd, [first.x, first.y, first.x, first.y, first.x, first.y, first.x, first.y]);
+    let (mut low, mut high, mut finite) = (start, start, start * 0.0);
+    let (blocks, rest) = points.as_chunks::<4>();
+    let mut last = [first; 4];
+    for (last, p) in last.iter_mut().zip(rest) {
+        *last = *p;
+    }
+    for block in blocks.iter().chain(std::iter::once(&last)) {
+        let v = f32x8::load_array(simd, bytemuck::cast(*block));
+        low = min_f32(v, low);
+        high = max_f32(v, high);
+        finite += v * 0.0;
+    }
+    let smallest = |lanes: [f32; 8], lane: usize| {
+        lanes.iter().skip(lane).step_by(2).copied().reduce(|a, b| if b < a { b } else { a })
+    };
+    let (low, high, finite) = (low.to_array(), (high * -1.0).to_array(), finite.to_array());
+    if finite != [0.0; 8] {
+        return None;
+    }
+    Some([smallest(low, 0)?, smallest(low, 1)?, -smallest(high, 0)?, -smallest(high, 1)?])
+}
+
+/// Appends device points within ±2^22 as fixed point, rounded to nearest, ties to even.
+#[inline(always)]
+fn append_fixed<S: Simd>(simd: S, points: &[Point], out: &mut Vec<FixedPoint>) {
+    let round = |block: [Point; 4]| -> [FixedPoint; 4] {
+        // A float times a power of two is exact, so that it is rounded once.
+        let v = f32x8::load_array(simd, bytemuck::cast(block)) * fixed::ONE as f32;
+        bytemuck::cast(truncate_f32(v.round_ties_even()).to_array())
+    };
+    let (blocks, rest) = points.as_chunks::<4>();
+    for block in blocks {
+        out.extend_from_slice(&round(*block));
+    }
+    if !rest.is_empty() {
+        let mut last = [Point::ZERO; 4];
+        for (last, p) in last.iter_mut().zip(rest) {
+            *last = *p;
+        }
+        let end = out.len() + rest.len();
+        out.extend_from_slice(&round(last));
+        out.truncate(end);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+    use crate::path::flatten::PolygonSink;
+
+    fn bins_of(points: &[(f32, f32)], clip: IntRect, open_right: bool, bands: usize, height_shift: u32) -> EdgeBins {
+        let mut polygons = Polygons::default();
+        polygons.begin(points[0].into());
+        for p in &points[1..] {
+            polygons.line((*p).into());
+        }
+        polygons.end();
+        let mut bins = EdgeBins::default();
+        bins.reset(bands, height_shift);
+        dispatch!(SimdLevel::best(), simd => bins.add(simd, 7, &polygons, clip, open_right));
+        bins
+    }
+
+    fn edges_of(points: &[(f32, f32)], clip: IntRect, open_right: bool) -> Vec<Edge> {
+        let bins = bins_of(points, clip, open_right, 1, 12);
+        let band = bins.band(0).unwrap();
+        let mut edges = Vec::new();
+        for item in &band.items {
+            bins.edges(band, *item).for_each(|edge| edges.push(edge));
+        }
+        edges
+    }
+
+    /// The winding of a clipped outline at a pixel's centre, by the edges left of it.
+    fn winding(edges: &[Edge], x: f64, y: f64) -> i32 {
+        edges
+            .iter()
+            .map(|e| {
+                let (x0, y0, x1, y1, s) = e.downward();
+                let (x0, y0, x1, y1) =
+                    (f64::from(x0) / 256.0, f64::from(y0) / 256.0, f64::from(x1) / 256.0, f64::from(y1) / 256.0);
+                if y0 <= y && y < y1 && x0 + (x1 - x0) * (y - y0) / (y1 - y0) <= x { s } else { 0 }
+            })
+            .sum()
+    }
+
+    #[test]
+    fn clipping_keeps_windings_inside_and_clears_them_outside() {
+        let clip = IntRect::from_ltrb(10, 10, 30, 30);
+        let far = 3e7;
+        for points in [
+            vec![(-5.0, 0.0), (50.0, 20.0), (0.0, 45.0)],
+            vec![(0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (0.0, 40.0)],
+            vec![(-far, -far), (far, -far), (far, far), (-far, far)],
+            vec![(15.0, -1e30), (25.0, -1e30), (20.0, 1e30)],
+            vec![(-1e30, 15.0), (1e30, 15.5), (1e30, 25.3), (-1e30, 24.3)],
+            vec![(12.0, 12.0), (f32::MAX, 20.0), (12.0, 28.0)],
+        ] {
+            for open_right in [false, true] {
+                let edges = edges_of(&points, clip, open_right);
+                for e in &edges {
+                    assert!(e.y0 != e.y1 && [e.x0, e.x1].iter().all(|x| (2560..=7680).contains(x)), "{e:?}");
+                    assert!([e.y0, e.y1].iter().all(|y| (2560..=7680).contains(y)), "{e:?}");
+                }
+                for y in 0..40 {
+                    for x in 0..40 {
+                        let (px, py) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+                        let inside = (10..30).contains(&x) && (10..30).contains(&y);
+                        if !inside && open_right && x >= 30 {
+                            continue;
+                        }
+                        let n = points.len();
+                        let mut nearest = f64::MAX;
+                        let expected: i32 = (0..n)
+                            .map(|i| {
+                                let (x0, y0) = (f64::from(points[i].0), f64::from(points[i].1));
+                                let (x1, y1) = (f64::from(points[(i + 1) % n].0), f64::from(points[(i + 1) % n].1));
+                                let crosses = (y0 <= py) != (y1 <= py);
+                                let t = (py - y0) / (y1 - y0);
+                                let at = x0 * (1.0 - t) + x1 * t;
+                                if crosses {
+                                    nearest = nearest.min((at - px).abs());
+                                }
+                                if crosses && at <= px { if y1 > y0 { 1 } else { -1 } } else { 0 }
+                            })
+                            .sum();
+                        if nearest > 0.02 {
+                            let expected = if inside { expected } else { 0 };
+                            assert_eq!(winding(&edges, px, py), expected, "({x}, {y}) of {points:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_edge_is_listed_in_each_band_that_it_touches() {
+        let clip = IntRect::from_ltrb(0, 0, 32, 32);
+        for far in [9.0, 90.0] {
+            // With a corner outside of the clip, the outline goes the other way through the code.
+            let bins = bins_of(&[(1.0, 8.0), (1.0, 24.0), (far, 24.0)], clip, true, 4, 3);
+            let counts: Vec<_> = (0..4).map(|b| bins.band(b).unwrap().edges.len()).collect();
+            let items: Vec<_> = (0..4).map(|b| bins.band(b).unwrap().items.len()).collect();
+            assert_eq!(items, [0, 1, 1, 0], "bands without edges do not list the command");
+            assert_eq!(counts[1], 2);
+            assert_eq!((counts[0], counts[3]), (0, 0));
+        }
+    }
+
+    #[test]
+    fn points_are_rounded_as_one_by_one_and_their_extent_is_found() {
+        let points: Vec<Point> =
+            (0..29).map(|i| Point::new(i as f32 * 1.7 - 20.0 + 0.5 / 256.0, 16_383.3 - i as f32 * 0.9)).collect();
+        for level in SimdLevel::available() {
+            for count in 1..points.len() {
+                let points = &points[..count];
+                let mut out = vec![FixedPoint { x: 7, y: 7 }];
+                dispatch!(level, simd => append_fixed(simd, points, &mut out));
+                let expected: Vec<_> =
+                    points.iter().map(|p| FixedPoint { x: fixed::from_f32(p.x), y: fixed::from_f32(p.y) }).collect();
+                assert_eq!(out[1..], expected, "{level:?}");
+                let last = points[count - 1];
+                let found = dispatch!(level, simd => extent(simd, points));
+                assert_eq!(found, Some([points[0].x, last.y, last.x, points[0].y]), "{level:?}");
+            }
+            let bad = [Point::ZERO, Point::new(f32::NAN, 1.0), Point::ZERO];
+            assert_eq!(dispatch!(level, simd => extent(simd, &bad)), None);
+            assert_eq!(dispatch!(level, simd => extent(simd, &[])), None);
+        }
+    }
+}

@@ -1,0 +1,483 @@
+//! The kernel: edges into cells, eight rows at a time.
+//!
+//! A piece of an edge in one row, between x_left and x_right (in 1/256 pixel), climbs `d` (0 ..= 256) with winding s. Left
+//! of it nothing is covered, right of it 2·256·d·s, and in between, at a pixel's right side b, the covered area up
+//! to there is
+//!
+//! > s·steep·t²,  t = clamp(b, x_left, x_right) − x_left,  steep = |dy / dx|
+//!
+//! So a pixel's own area is the difference of two such terms, plus 2·d·s for each 1/256 of it that lies right of x_right:
+//! no case to distinguish, and no branch. Cells hold the difference of each pixel's area to its left neighbour's; that
+//! of the last is what the sum still lacks, so that what winds around the pixels right of a piece is exact, whatever
+//! was rounded.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, i32x8};
+
+use super::bins::Edges;
+use super::cell::{Accumulator, Column, FULL, Marks, StripCells};
+use super::edge::{Edge, EdgeLine};
+use crate::num::fixed;
+use crate::num::lanes::{max_f32, max_i32, min_f32, min_i32, round_f32};
+use crate::style::FillRule;
+use crate::surface::block::BLOCK_HEIGHT;
+
+/// An edge that runs over more columns than this in a row is walked row by row: eight lanes would
+/// mostly idle.
+const FLAT_COLUMNS_PER_ROW: f32 = 10.0;
+
+/// Fraction bits of x where an edge enters and leaves a strip: it is rounded there once more, and finer
+/// than its ends, so that this does not show.
+const FINE_SHIFT: u32 = 12;
+
+/// A strip's height in fixed point.
+pub(super) const STRIP_SHIFT: u32 = fixed::SHIFT + BLOCK_HEIGHT.ilog2();
+
+/// A difference of x in 20.12 fixed point, in 1/256 pixel.
+#[inline(always)]
+fn fine(x: i32) -> f32 {
+    x as f32 * (1.0 / 16.0)
+}
+
+/// The columns of a strip whose coverage matters: edges left of them only wind around them, edges right of them do
+/// nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// x in 20.12 fixed point.
+    low: i32,
+    high: i32,
+}
+
+impl Reach {
+    pub(crate) const NOTHING: Self = Self { low: i32::MIN, high: i32::MIN };
+
+    /// The columns `first..end`.
+    pub(crate) fn columns(first: usize, end: usize) -> Self {
+        Self { low: (first as i32) << FINE_SHIFT, high: (end as i32) << FINE_SHIFT }
+    }
+}
+
+/// Adds the part of `edge` inside the band whose top is at `top` (fixed point, a whole strip) and which has
+/// `strips` strips. With `TOUCH`, notes which pixels it passes through.
+///
+/// Where an edge leaves a strip is a function of the edge and of that scanline, so that it does not
+/// matter in which band the strip is. `reaches` says of each strip which columns matter; all of those of strips that it
+/// does not have.
+#[inline(always)]
+pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
+    simd: S,
+    cells: &mut Accumulator,
+    edge: Edge,
+    top: i32,
+    strips: usize,
+    reaches: &[Reach],
+) {
+    let winding = edge.downward().4;
+    for_strip_parts(
+        edge,
+        top,
+        strips,
+        #[inline(always)]
+        |index, start, end| add_strip_part::<S, TOUCH>(simd, cells, index, start, end, winding, top, reaches),
+    );
+}
+
+/// Calls `part` with each of the strips below `top` that an edge crosses, and with where it starts and ends there: x in
+/// 20.12, y in 24.8 fixed point, downwards.
+#[inline(always)]
+pub(super) fn for_strip_parts(
+    edge: Edge,
+    top: i32,
+    strips: usize,
+    mut part: impl FnMut(usize, (i32, i32), (i32, i32)),
+) {
+    let (x0, y0, x1, y1, _) = edge.downward();
+    let first = (y0 - top) >> STRIP_SHIFT;
+    let last = (y1 - 1 - top) >> STRIP_SHIFT;
+    let (start, end) = ((x0 << 4, y0), (x1 << 4, y1));
+    if first == last {
+        if (0..strips as i32).contains(&first) {
+            part(first as usize, start, end);
+        }
+        return;
+    }
+    let line = EdgeLine::new(x0, y0, x1, y1);
+    let mut from = if first < 0 { (line.fine_x_at(top), top) } else { start };
+    for index in first.max(0)..=last.min(strips as i32 - 1) {
+        let bottom = top + ((index + 1) << STRIP_SHIFT);
+        let to = if index == last { end } else { (line.fine_x_at(bottom), bottom) };
+        part(index as usize, from, to);
+        from = to;
+    }
+}
+
+/// Adds the part of an edge that lies in strip `index`, unless it lies where nothing matters.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "in the innermost loop; a struct would only rename them")]
+fn add_strip_part<S: Simd, const TOUCH: bool>(
+    simd: S,
+    cells: &mut Accumulator,
+    index: usize,
+    mut start: (i32, i32),
+    mut end: (i32, i32),
+    winding: i32,
+    top: i32,
+    reaches: &[Reach],
+) {
+    if let Some(Reach { low, high }) = reaches.get(index) {
+        if start.0 >= *high && end.0 >= *high {
+            return;
+        }
+        if start.0 < *low && end.0 < *low {
+            (start.0, end.0) = (*low, *low);
+        }
+    }
+    if let Some(mut strip) = cells.strip(index) {
+        add_piece::<S, TOUCH>(simd, &mut strip, start, end, winding, top + ((index as i32) << STRIP_SHIFT));
+    }
+}
+
+/// Adds the part of an edge that lies in one strip, from (start_x, start_y) down to (end_x, end_y); `top` is
+/// the strip's top. x in 20.12, y in 24.8 fixed point.
+#[inline(always)]
+fn add_piece<S: Simd, const TOUCH: bool>(
+    simd: S,
+    cells: &mut StripCells<'_>,
+    (start_x, start_y): (i32, i32),
+    (end_x, end_y): (i32, i32),
+    winding: i32,
+    top: i32,
+) {
+    let (first, last) = RowParts::<S>::columns((start_x, start_y), (end_x, end_y));
+    let rise = (end_y - start_y) as f32;
+    if last > first + 4 && (last - first) as f32 * 256.0 > FLAT_COLUMNS_PER_ROW * rise {
+        let round = |x: i32| (x + (1 << (FINE_SHIFT - fixed::SHIFT - 1))) >> (FINE_SHIFT - fixed::SHIFT);
+        add_flat::<TOUCH>(cells, round(start_x), start_y, round(end_x), end_y, top, winding);
+        return;
+    }
+
+    let row = RowParts::new(simd, (start_x, start_y), (end_x, end_y), winding, top, first);
+    if last - first <= 1 {
+        cells.occupy_pair(first, last + 1);
+        if let Some(columns) = cells.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) {
+            add_two_columns(simd, columns, row);
+        }
+    } else {
+        cells.occupy(first, last + 1);
+        if let Some(columns) = cells.columns.get_mut(first..last + 2) {
+            add_columns(simd, columns, row);
+        }
+    }
+    if TOUCH {
+        row.touch(simd, cells.marks.get_mut(first..=last).unwrap_or(&mut []));
+    }
+}
+
+/// The parts of an edge in the eight rows of a strip; x in 1/256 pixel from the first column's left side.
+#[derive(Clone, Copy)]
+pub(super) struct RowParts<S: Simd> {
+    pub(super) left: f32x8<S>,
+    pub(super) right: f32x8<S>,
+    /// Where each part starts and ends, in 1/256 pixel below the edge's own start in the strip.
+    pub(super) upper: i32x8<S>,
+    pub(super) lower: i32x8<S>,
+    /// x where the edge starts in the strip, and its change per unit of y.
+    pub(super) start: f32,
+    pub(super) slope: f32,
+    /// |dy / dx| times the winding.
+    steep: f32x8<S>,
+    /// What each 1/256 pixel right of a part adds.
+    beyond: f32x8<S>,
+    /// What each pixel right of a part adds.
+    total: i32x8<S>,
+}
+
+impl<S: Simd> RowParts<S> {
+    /// The first and last column between two points in 20.12 fixed point.
+    #[inline(always)]
+    pub(super) fn columns((start_x, _): (i32, i32), (end_x, _): (i32, i32)) -> (usize, usize) {
+        let (low, high) = if start_x < end_x { (start_x, end_x) } else { (end_x, start_x) };
+        ((low >> FINE_SHIFT) as usize, (high >> FINE_SHIFT) as usize)
+    }
+
+    /// The parts of the edge from (start_x, start_y) down to (end_x, end_y) in the strip at `top`, whose first column is
+    /// `first`. All is float until a pixel's area is rounded: x is then good to far less than 1/256 pixel.
+    #[inline(always)]
+    pub(super) fn new(
+        simd: S,
+        (start_x, start_y): (i32, i32),
+        (end_x, end_y): (i32, i32),
+        winding: i32,
+        top: i32,
+        first: usize,
+    ) -> Self {
+        let (run, rise) = (fine(end_x - start_x), (end_y - start_y) as f32);
+        let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) + (top - start_y);
+        let height = i32x8::splat(simd, end_y - start_y);
+        let zero = i32x8::splat(simd, 0);
+        let upper = min_i32(max_i32(rows, zero), height);
+        let lower = min_i32(max_i32(rows + 256, zero), height);
+        let dy = lower - upper;
+        let start = fine(start_x - ((first as i32) << FINE_SHIFT));
+        let start8 = f32x8::splat(simd, start);
+        let slope = run / rise;
+        let upper_x = upper.to_float::<f32x8<S>>() * slope + start8;
+        let lower_x = lower.to_float::<f32x8<S>>() * slope + start8;
+        Self {
+            left: min_f32(upper_x, lower_x),
+            right: max_f32(upper_x, lower_x),
+            upper,
+            lower,
+            start,
+            slope,
+            // Upright pieces have t = 0.
+            steep: f32x8::splat(simd, if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() }),
+            beyond: dy.to_float::<f32x8<S>>() * (2.0 * winding as f32),
+            total: dy * (512 * winding),
+        }
+    }
+
+    /// Notes the rows of each column that the parts pass through.
+    #[inline(always)]
+    fn touch(self, simd: S, columns: &mut [Marks]) {
+        let climbs = self.lower.simd_gt(self.upper).to_bitmask() as u8;
+        let mut side = 0.0;
+        for marks in columns {
+            let starts = self.left.simd_lt(f32x8::splat(simd, side + 256.0)).to_bitmask() as u8;
+            let ends = self.right.simd_ge(f32x8::splat(simd, side)).to_bitmask() as u8;
+            marks.touch(climbs & starts & ends);
+            side += 256.0;
+        }
+    }
+}
+
+#[inline(always)]
+fn add_to<S: Simd>(simd: S, column: &mut Column, value: i32x8<S>) {
+    (i32x8::load_array_ref(simd, column) + value).store_array(column);
+}
+
+/// Adds parts that lie in the first two columns.
+#[inline(always)]
+fn add_two_columns<S: Simd>(simd: S, [here, next, after]: &mut [Column; 3], row: RowParts<S>) {
+    let RowParts { left, right, steep, beyond, total, .. } = row;
+    let zero = f32x8::splat(simd, 0.0);
+    let side = f32x8::splat(simd, 256.0);
+    let t = max_f32(min_f32(right, side) - left, zero);
+    let width = right - left;
+    let within = steep * t * t;
+    let area = round_f32(within + beyond * max_f32(side - right, zero));
+    let rest = steep * width * width - within;
+    let next_area = round_f32(rest + beyond * min_f32(512.0 - right, side));
+    add_to(simd, here, area);
+    add_to(simd, next, next_area - area);
+    add_to(simd, after, total - next_area);
+}
+
+/// Adds parts that lie in all columns but the last.
+#[inline(always)]
+fn add_columns<S: Simd>(simd: S, columns: &mut [Column], row: RowParts<S>) {
+    let RowParts { left, right, steep, beyond, total, .. } = row;
+    let zero = f32x8::splat(simd, 0.0);
+    let whole = f32x8::splat(simd, 256.0);
+    let (mut within, mut area) = (zero, i32x8::splat(simd, 0));
+    let mut side = whole;
+    let Some((spill, columns)) = columns.split_last_mut() else { return };
+    for column in columns {
+        let t = max_f32(min_f32(right, side) - left, zero);
+        let up_to_here = steep * t * t;
+        let right_of = min_f32(max_f32(side - right, zero), whole);
+        let here = round_f32((up_to_here - within) + beyond * right_of);
+        add_to(simd, column, here - area);
+        (within, area) = (up_to_here, here);
+        side += whole;
+    }
+    add_to(simd, spill, total - area);
+}
+
+impl StripCells<'_> {
+    /// Adds a piece of an edge that lies within one row: from x0 to x1 (either order), climbing `dy` (0 ..= 256,
+    /// times the winding). The way very flat edges go; the kernel's formula, in plain `f64`.
+    pub(crate) fn add_row_piece(&mut self, row: usize, x0: i32, x1: i32, dy: i32) {
+        if dy == 0 || row >= BLOCK_HEIGHT {
+            return;
+        }
+        let (left, right) = if x0 < x1 { (x0, x1) } else { (x1, x0) };
+        let first = left >> fixed::SHIFT;
+        // An end on a pixel's left side belongs to the pixel before.
+        let last = first.max((right - 1) >> fixed::SHIFT);
+        self.occupy(first as usize, last as usize + 1);
+        let Some(columns) = self.columns.get_mut(first as usize..last as usize + 2) else { return };
+        let height = f64::from(dy);
+        let (width, steep) = (f64::from(right - left), height / f64::from((right - left).max(1)));
+        let mut side = f64::from(((first + 1) << fixed::SHIFT) - left);
+        let (mut within, mut area) = (0.0, 0);
+        let Some((spill, columns)) = columns.split_last_mut() else { return };
+        let Some((end, columns)) = columns.split_last_mut() else { return };
+        let add = |column: &mut Column, value: i32| {
+            if let Some(cell) = column.get_mut(row) {
+                *cell = cell.wrapping_add(value);
+            }
+        };
+        for column in columns {
+            let up_to_here = steep * side * side;
+            let here = round(up_to_here - within);
+            add(column, here - area);
+            (within, area) = (up_to_here, here);
+            side += 256.0;
+        }
+        let here = round(height * width - within + 2.0 * height * (side - width));
+        add(end, here - area);
+        add(spill, 512 * dy - here);
+    }
+}
+
+/// The nearest integer, ties to even, of a value within ±2^31.
+#[inline(always)]
+fn round(v: f64) -> i32 {
+    (v + 6_755_399_441_055_744.0).to_bits() as i32
+}
+
+/// Adds a flat piece row by row.
+#[inline(never)]
+fn add_flat<const TOUCH: bool>(
+    cells: &mut StripCells<'_>,
+    start_x: i32,
+    start_y: i32,
+    end_x: i32,
+    end_y: i32,
+    top: i32,
+    winding: i32,
+) {
+    let line = EdgeLine::new(start_x, start_y, end_x, end_y);
+    let (mut x, mut y) = (start_x, start_y);
+    while y < end_y {
+        let row = (y - top) >> fixed::SHIFT;
+        let next_y = end_y.min(top + ((row + 1) << fixed::SHIFT));
+        let next_x = if next_y == end_y { end_x } else { line.x_at(next_y) };
+        cells.add_row_piece(row as usize, x, next_x, (next_y - y) * winding);
+        if TOUCH {
+            let (left, right) = if x < next_x { (x, next_x) } else { (next_x, x) };
+            let (first, last) = (left >> fixed::SHIFT, (right >> fixed::SHIFT).max(left >> fixed::SHIFT));
+            for marks in cells.marks.get_mut(first as usize..=last as usize).unwrap_or(&mut []) {
+                marks.touch(1 << row);
+            }
+        }
+        (x, y) = (next_x, next_y);
+    }
+}
+
+/// From so many edges on, the sums of their areas could leave the 32 bits of a cell.
+pub(crate) const CROWD: usize = (i32::MAX / FULL) as usize;
+
+/// Adds any number of edges, to be read by the nonzero rule: by the crowd, whose sums are set aside.
+#[inline(always)]
+pub(crate) fn add_crowd<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    edges: Edges<'_>,
+    top: i32,
+    strips: usize,
+    reaches: &[Reach],
+) {
+    for crowd in edges.chunks(CROWD - 1) {
+        crowd.for_each(
+            #[inline(always)]
+            |edge| add_edge::<S, false>(simd, cells, edge, top, strips, reaches),
+        );
+        cells.set_aside();
+    }
+    cells.bring_back(FillRule::NonZero);
+    cells.forget();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+
+    /// Covered area of each pixel times FULL for a set of edges, by integrating each edge on its own in f64.
+    fn oracle(edges: &[Edge], width: usize) -> Vec<[f64; 8]> {
+        let mut out = vec![[0.0; 8]; width];
+        for edge in edges {
+            let (x0, y0, x1, y1, s) = edge.downward();
+            let f = |v: i32| f64::from(v) / 256.0;
+            for row in 0..8 {
+                let (top, bottom) = (f(y0).max(f64::from(row)), f(y1).min(f64::from(row) + 1.0));
+                let steps = 2000;
+                for i in 0..steps {
+                    if bottom <= top {
+                        break;
+                    }
+                    let y = top + (bottom - top) * (f64::from(i) + 0.5) / f64::from(steps);
+                    let x = f(x0) + (f(x1) - f(x0)) * (y - f(y0)) / (f(y1) - f(y0));
+                    for (column, rows) in out.iter_mut().enumerate() {
+                        let covered = (column as f64 + 1.0 - x).clamp(0.0, 1.0);
+                        rows[row as usize] += f64::from(s) * covered * (bottom - top) / f64::from(steps);
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    fn accumulate(level: SimdLevel, edges: &[Edge], width: usize) -> Vec<Column> {
+        let mut cells = Accumulator::default();
+        cells.resize(width, 1);
+        for edge in edges {
+            dispatch!(level, simd => add_edge::<_, true>(simd, &mut cells, *edge, 0, 1, &[]));
+        }
+        let strip = cells.strip(0).unwrap();
+        let mut sum = [0_i32; 8];
+        let out = strip.columns[..width]
+            .iter()
+            .map(|column| {
+                for (s, c) in sum.iter_mut().zip(column) {
+                    *s += c;
+                }
+                sum
+            })
+            .collect();
+        for (column, values) in strip.columns.iter().enumerate() {
+            let bit = strip.occupied[column / 16 / 64] >> (column / 16 % 64) & 1;
+            assert!(bit == 1 || *values == [0; 8], "column {column} holds values but is not marked");
+        }
+        out
+    }
+
+    #[test]
+    fn areas_equal_the_integral_at_every_slope_and_level() {
+        let mut seed = 1_u32;
+        let mut random = |n: i32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as i32 % n
+        };
+        let width = 40;
+        for case in 0..300 {
+            let flat = if case % 3 == 0 { 300 } else { 6000 };
+            let y0 = random(6000) - 2000;
+            let edge = Edge { x0: random(40 * 256), y0, x1: random(40 * 256), y1: y0 + 1 + random(flat) };
+            let edge = if case % 2 == 0 { edge } else { Edge { x0: edge.x1, y0: edge.y1, x1: edge.x0, y1: edge.y0 } };
+            let expected = oracle(&[edge], width);
+            let scalar = accumulate(SimdLevel::Scalar, &[edge], width);
+            for level in SimdLevel::available() {
+                assert_eq!(accumulate(level, &[edge], width), scalar, "{edge:?} at {level:?}");
+            }
+            for (column, (got, want)) in scalar.iter().zip(&expected).enumerate() {
+                for row in 0..8 {
+                    let got = f64::from(got[row]) / f64::from(FULL);
+                    assert!((got - want[row]).abs() < 0.004, "{edge:?}: pixel ({column}, {row}) {got} {}", want[row]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn total_cover_is_exact_right_of_an_edge() {
+        let edge = Edge { x0: 3 * 256 + 7, y0: 100, x1: 29 * 256 + 200, y1: 1300 };
+        for level in SimdLevel::available() {
+            let sums = accumulate(level, &[edge], 40);
+            let expected = [156 * 512, FULL, FULL, FULL, FULL, 20 * 512, 0, 0];
+            assert_eq!(sums[35], expected, "{level:?}");
+        }
+    }
+}

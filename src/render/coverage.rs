@@ -1,0 +1,185 @@
+//! Which pixels: a shape's edges into cells, and cells into blocks of coverage.
+
+use fearless_simd::Simd;
+
+use super::band::{BandScratch, Frame};
+use super::prepare::is_exact;
+use crate::display_list::{Geometry, Span};
+use crate::geom::{FixedRect, IntRect};
+use crate::num::fixed;
+use crate::raster::bins::Edges;
+use crate::raster::cell::Accumulator;
+use crate::raster::edge::Edge;
+use crate::raster::sweep::{BlockSink, CoverageRule, sweep, sweep_rect};
+use crate::raster::{exact, kernel, sample};
+use crate::style::{Antialias, FillRule};
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
+
+/// Where a shape's coverage is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Coverage {
+    /// In the cells, to be read by a rule.
+    Cells(CoverageRule),
+    /// It is that of a rectangle, which needs no cells.
+    Rect(FixedRect),
+}
+
+impl Coverage {
+    /// Whether a strip has none.
+    #[inline(always)]
+    pub(super) fn is_empty(self, frame: &Frame<'_>, cells: &Accumulator, strip: usize) -> bool {
+        match self {
+            Self::Cells(_) => !cells.is_occupied(strip),
+            Self::Rect(rect) => {
+                let top = frame.strip_top(strip) << fixed::SHIFT;
+                rect.top >= top + ((BLOCK_HEIGHT as i32) << fixed::SHIFT) || rect.bottom <= top
+            }
+        }
+    }
+
+    /// Reports a strip's coverage in blocks `..end` and leaves its cells zero.
+    #[inline(always)]
+    pub(super) fn sweep<S: Simd, K: BlockSink<S>>(
+        self,
+        simd: S,
+        frame: &Frame<'_>,
+        cells: &mut Accumulator,
+        strip: usize,
+        end: usize,
+        sink: &mut K,
+    ) {
+        match self {
+            Self::Cells(rule) => {
+                if let Some(mut cells) = cells.strip(strip) {
+                    sweep(simd, &mut cells, end, rule, sink);
+                }
+            }
+            Self::Rect(rect) => sweep_rect(simd, rect, frame.strip_top(strip) << fixed::SHIFT, end, sink),
+        }
+    }
+}
+
+/// Brings a shape, of which only what lies in `bounds` (device pixels) is drawn, into the cells, and says how to read
+/// them.
+#[inline(never)]
+#[expect(clippy::too_many_arguments, reason = "a draw's facts")]
+pub(super) fn accumulate<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    scratch: &mut BandScratch,
+    geometry: &Geometry,
+    antialias: Antialias,
+    bounds: IntRect,
+    edges: Edges<'_>,
+) -> Coverage {
+    simd.vectorize(
+        #[inline(always)]
+        || accumulate_inner(simd, frame, scratch, geometry, antialias, bounds, edges),
+    )
+}
+
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "a draw's facts")]
+fn accumulate_inner<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    scratch: &mut BandScratch,
+    geometry: &Geometry,
+    antialias: Antialias,
+    bounds: IntRect,
+    edges: Edges<'_>,
+) -> Coverage {
+    let rule = match geometry {
+        Geometry::Fill { rule, .. } => *rule,
+        _ => FillRule::NonZero,
+    };
+    if let Geometry::Spans(range) = geometry {
+        add_spans(frame, &mut scratch.cells, frame.list.spans.get(range.0 as usize..range.1 as usize).unwrap_or(&[]));
+        return Coverage::Cells(CoverageRule::NonZero);
+    }
+    match geometry {
+        Geometry::Rect(rect) if is_exact(antialias) => {
+            return Coverage::Rect(rect.intersect(bounds.intersect(frame.area())));
+        }
+        Geometry::Bounds => return Coverage::Rect(FixedRect::of_pixels(bounds.intersect(frame.area()))),
+        _ => {}
+    }
+    let top = frame.top << fixed::SHIFT;
+    let grid = match antialias {
+        Antialias::Analytic => {
+            // Sums by the even-odd rule may wrap around: what is lost is even.
+            if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
+                kernel::add_crowd(simd, &mut scratch.cells, edges, top, frame.strips, &scratch.reaches);
+                return Coverage::Cells(rule.into());
+            }
+            let BandScratch { cells, reaches, .. } = scratch;
+            edges.for_each(
+                #[inline(always)]
+                |edge| kernel::add_edge::<S, false>(simd, cells, edge, top, frame.strips, reaches),
+            );
+            return Coverage::Cells(rule.into());
+        }
+        Antialias::Exact => {
+            let edges = &*listed(&mut scratch.edges, edges, true);
+            if edges.len() >= kernel::CROWD {
+                exact::add_touching_crowd(simd, &mut scratch.cells, edges, top, frame.strips, rule);
+            } else {
+                exact::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips);
+            }
+            for strip in 0..frame.strips {
+                let Some(mut cells) = scratch.cells.strip(strip) else { break };
+                let strip_top = frame.strip_top(strip) << fixed::SHIFT;
+                exact::resolve(simd, &mut cells, edges, strip_top, rule, &mut scratch.exact);
+            }
+            scratch.cells.forget();
+            return Coverage::Cells(rule.into());
+        }
+        Antialias::Supersample(grid) => grid.clamp(1, 16),
+        Antialias::None => 1,
+    };
+    let edges = &*listed(&mut scratch.edges, edges, false);
+    for strip in 0..frame.strips {
+        if let Some(mut cells) = scratch.cells.strip(strip) {
+            let strip_top = frame.strip_top(strip) << fixed::SHIFT;
+            sample::add_samples(&mut cells, edges, strip_top, grid, rule, &mut scratch.sample);
+        }
+    }
+    Coverage::Cells(CoverageRule::Samples(u16::from(grid) * u16::from(grid)))
+}
+
+/// Edges side by side, for steps that look at them more than once; with horizontal ones, if asked for.
+fn listed<'a>(list: &'a mut Vec<Edge>, edges: Edges<'_>, horizontal: bool) -> &'a mut Vec<Edge> {
+    list.clear();
+    if horizontal {
+        edges.for_all(|edge| list.push(edge));
+    } else {
+        edges.for_each(|edge| list.push(edge));
+    }
+    list
+}
+
+/// Adds the whole pixels of `spans` (in order of rows) that lie in this band.
+fn add_spans(frame: &Frame<'_>, cells: &mut Accumulator, spans: &[Span]) {
+    let first = spans.partition_point(|span| span.y < frame.top);
+    let end = spans.partition_point(|span| span.y < frame.top + frame.rows as i32);
+    for span in spans.get(first..end).unwrap_or(&[]) {
+        let row = (span.y - frame.top) as usize;
+        let Some(mut strip) = cells.strip(row / BLOCK_HEIGHT) else { continue };
+        let limit = (frame.blocks * BLOCK_WIDTH) as i32;
+        let (start, end) = (span.start.clamp(0, limit), span.end.clamp(0, limit));
+        if start < end {
+            let row = row % BLOCK_HEIGHT;
+            strip.add_row_piece(row, start << 8, start << 8, 256);
+            strip.add_row_piece(row, end << 8, end << 8, -256);
+        }
+    }
+}
+
+impl From<FillRule> for CoverageRule {
+    fn from(rule: FillRule) -> Self {
+        match rule {
+            FillRule::NonZero => Self::NonZero,
+            FillRule::EvenOdd => Self::EvenOdd,
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! Where coverage meets colour: blocks of coverage are cut by the clip, given colours and blended into rows.
+
+use fearless_simd::Simd;
+
+use super::band::Frame;
+use super::clip::{BandMask, ClipBlock};
+use super::coverage::Coverage;
+use super::occlusion::Occlusion;
+use super::surface::Surface;
+use crate::blend::{
+    BlendMode, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row, over_solid_full,
+    over_solid_row, scale_mask_row, scale_mask_row_by,
+};
+use crate::paint::{PreparedPaint, fetch_block};
+use crate::raster::cell::Accumulator;
+use crate::raster::sweep::BlockSink;
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, PixelBlock};
+
+const ROW_BYTES: usize = BLOCK_WIDTH * 4;
+const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
+const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
+
+/// Where a painter's colours come from.
+pub(super) enum Source<'a> {
+    /// One premultiplied colour.
+    Solid([u8; 4]),
+    /// A function of the pixel.
+    Paint(&'a PreparedPaint),
+    /// A finished layer.
+    Layer(Surface<'a>),
+}
+
+/// How covered pixels look.
+pub(super) struct Look<'a> {
+    pub(super) source: Source<'a>,
+    pub(super) blend_mode: BlendMode,
+    /// What coverage is multiplied by.
+    pub(super) opacity: u8,
+    pub(super) clip: Option<&'a BandMask>,
+}
+
+/// Draws a shape's coverage onto a surface; `cells` hold it, or it is a rectangle's.
+#[inline(never)]
+pub(super) fn paint_coverage<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    cells: &mut Accumulator,
+    coverage: Coverage,
+    look: Look<'_>,
+    surface: &mut Surface<'_>,
+    seen: (&Occlusion, &[(usize, usize)]),
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || paint_coverage_inner(simd, frame, cells, coverage, look, surface, seen),
+    )
+}
+
+#[inline(always)]
+fn paint_coverage_inner<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    cells: &mut Accumulator,
+    coverage: Coverage,
+    mut look: Look<'_>,
+    surface: &mut Surface<'_>,
+    (occlusion, visible): (&Occlusion, &[(usize, usize)]),
+) {
+    let mut pattern = [0; ROW_BYTES];
+    if let Source::Solid(color) = look.source {
+        for pixel in pattern.as_chunks_mut::<4>().0 {
+            *pixel = color;
+        }
+    }
+    for strip in 0..frame.strips {
+        if coverage.is_empty(frame, cells, strip) {
+            continue;
+        }
+        let rows = surface.strip_rows(strip);
+        let top = frame.strip_top(strip);
+        let end = visible.get(strip).map_or(frame.blocks, |(_, end)| *end);
+        let occlusion = visible.get(strip).map(|_| occlusion);
+        let mut painter = Painter { look: &mut look, pattern, occlusion, surface, strip, rows, top };
+        coverage.sweep(simd, frame, cells, strip, end, &mut painter);
+    }
+}
+
+/// Draws the coverage of one strip.
+struct Painter<'a, 'b, 'c> {
+    look: &'a mut Look<'b>,
+    /// A block's row of the one colour, if there is one.
+    pattern: [u8; ROW_BYTES],
+    /// What is hidden, if anything is.
+    occlusion: Option<&'a Occlusion>,
+    surface: &'a mut Surface<'c>,
+    strip: usize,
+    /// Rows of the strip that exist.
+    rows: usize,
+    /// Device y of the strip's first row.
+    top: i32,
+}
+
+impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
+    #[inline(always)]
+    fn wants(&self, index: usize) -> bool {
+        self.occlusion.is_none_or(|occlusion| !occlusion.is_hidden(self.strip, index))
+    }
+
+    #[inline(always)]
+    fn block(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+        if self.look.clip.is_none() && self.look.opacity == 255 {
+            self.paint(simd, index, mask);
+            return;
+        }
+        let mut mask = *mask;
+        if self.cut(simd, index, &mut mask) {
+            self.paint(simd, index, &mask);
+        }
+    }
+
+    #[inline(always)]
+    fn run(&mut self, simd: S, mut start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
+        if self.occlusion.is_some() {
+            // Between hidden blocks.
+            while start < end {
+                if !BlockSink::<S>::wants(self, start) {
+                    start += 1;
+                    continue;
+                }
+                let from = start;
+                while start < end && BlockSink::<S>::wants(self, start) {
+                    start += 1;
+                }
+                self.visible_run(simd, from, start, rows);
+            }
+        } else {
+            self.visible_run(simd, start, end, rows);
+        }
+    }
+}
+
+impl Painter<'_, '_, '_> {
+    #[inline(always)]
+    fn visible_run<S: Simd>(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
+        if self.look.clip.is_none()
+            && self.look.blend_mode == BlendMode::SourceOver
+            && let Source::Solid(color) = self.look.source
+        {
+            self.fill_run(simd, start, end, rows, color);
+            return;
+        }
+        let mut mask = EMPTY_MASK;
+        for (out, value) in mask.iter_mut().zip(rows) {
+            *out = [*value; BLOCK_WIDTH];
+        }
+        for index in start..end {
+            self.block(simd, index, &mask);
+        }
+    }
+
+    /// Multiplies coverage by opacity and clip; false where nothing is left.
+    #[inline(never)]
+    fn cut<S: Simd>(&self, simd: S, index: usize, mask: &mut MaskBlock) -> bool {
+        simd.vectorize(
+            #[inline(always)]
+            || self.cut_inner(simd, index, mask),
+        )
+    }
+
+    #[inline(always)]
+    fn cut_inner<S: Simd>(&self, simd: S, index: usize, mask: &mut MaskBlock) -> bool {
+        match self.look.clip.map_or(ClipBlock::Full, |clip| clip.get(self.strip, index)) {
+            ClipBlock::Empty => return false,
+            ClipBlock::Full => {}
+            ClipBlock::Partial(clip) => {
+                for (mask, clip) in mask.iter_mut().zip(clip) {
+                    scale_mask_row(simd, mask, clip);
+                }
+            }
+        }
+        if self.look.opacity != 255 {
+            for mask in mask.iter_mut() {
+                scale_mask_row_by(simd, mask, self.look.opacity);
+            }
+        }
+        true
+    }
+
+    /// Source-over of one colour along whole blocks of constant coverage.
+    #[inline(never)]
+    fn fill_run<S: Simd>(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT], color: [u8; 4]) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.fill_run_inner(simd, start, end, rows, color),
+        );
+    }
+
+    #[inline(always)]
+    fn fill_run_inner<S: Simd>(
+        &mut self,
+        simd: S,
+        start: usize,
+        end: usize,
+        rows: &[u8; BLOCK_HEIGHT],
+        color: [u8; 4],
+    ) {
+        for (row, &coverage) in rows.iter().enumerate().take(self.rows) {
+            if coverage == 0 {
+                continue;
+            }
+            let row = self.strip * BLOCK_HEIGHT + row;
+            let slice = self.surface.row(row, start, end);
+            let (blocks, tail) = slice.as_chunks_mut::<ROW_BYTES>();
+            if coverage == 255 && color[3] == 255 {
+                // Whole blocks at a time: four bytes at a time would be stored one by one.
+                for pixels in blocks {
+                    *pixels = self.pattern;
+                }
+                for (byte, pattern) in tail.iter_mut().zip(self.pattern) {
+                    *byte = pattern;
+                }
+                continue;
+            }
+            let last = start + blocks.len();
+            for pixels in blocks {
+                if coverage == 255 {
+                    over_solid_full(simd, pixels, color);
+                } else {
+                    over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
+                }
+            }
+            if !tail.is_empty() {
+                self.surface.with_row(
+                    row,
+                    last,
+                    #[inline(always)]
+                    |pixels| {
+                        over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
+                    },
+                );
+            }
+        }
+    }
+
+    /// Draws one block by its final coverage.
+    #[inline(never)]
+    fn paint<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.paint_inner(simd, index, mask),
+        );
+    }
+
+    #[inline(always)]
+    fn paint_inner<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+        let first_row = self.strip * BLOCK_HEIGHT;
+        let over = self.look.blend_mode == BlendMode::SourceOver;
+        if over && let Source::Solid(color) = self.look.source {
+            for (row, mask) in mask.iter().enumerate().take(self.rows) {
+                if *mask == [0; BLOCK_WIDTH] {
+                    continue;
+                }
+                let pattern = &self.pattern;
+                self.surface.with_row(
+                    first_row + row,
+                    index,
+                    #[inline(always)]
+                    |pixels| {
+                        if color[3] == 255 && *mask == [255; BLOCK_WIDTH] {
+                            *pixels = *pattern;
+                        } else if color[3] == 255 {
+                            over_opaque_row(simd, pixels, color, mask);
+                        } else {
+                            over_solid_row(simd, pixels, color, mask);
+                        }
+                    },
+                );
+            }
+            return;
+        }
+        let mut source = NO_PIXELS;
+        let mut opaque = false;
+        match &mut self.look.source {
+            Source::Solid(_) => source = [self.pattern; BLOCK_HEIGHT],
+            Source::Paint(paint) => {
+                opaque = paint.is_opaque();
+                fetch_block(simd, paint, (index * BLOCK_WIDTH) as i32, self.top, &mut source);
+            }
+            Source::Layer(layer) => {
+                source = layer.load(self.strip, index);
+                if over && source == NO_PIXELS {
+                    return;
+                }
+            }
+        }
+        if !over {
+            let mut pixels = self.surface.load(self.strip, index);
+            composite_block(simd, self.look.blend_mode, &mut pixels, &source, mask);
+            self.surface.store(self.strip, index, &pixels);
+            return;
+        }
+        for (row, (mask, source)) in mask.iter().zip(&source).enumerate().take(self.rows) {
+            if *mask == [0; BLOCK_WIDTH] {
+                continue;
+            }
+            let full = *mask == [255; BLOCK_WIDTH];
+            self.surface.with_row(
+                first_row + row,
+                index,
+                #[inline(always)]
+                |pixels| match (opaque, full) {
+                    (true, true) => *pixels = *source,
+                    (true, false) => mix_pixels_row(simd, pixels, source, mask),
+                    (false, true) => over_pixels_full(simd, pixels, source),
+                    (false, false) => over_pixels_row(simd, pixels, source, mask),
+                },
+            );
+        }
+    }
+}
