@@ -123,6 +123,8 @@ mod path;
 mod pool;
 pub mod raster;
 mod render;
+pub mod scene;
+pub mod space;
 mod style;
 mod surface;
 #[cfg(feature = "svg")]
@@ -133,6 +135,7 @@ pub use canvas::{Canvas, LayerOptions, SaveGuard, Shadow};
 pub use color::Color;
 pub use display_list::{ImagePaint, Paint};
 pub use error::{Error, Result};
+pub use fearless_simd;
 pub use geom::{IntRect, Point, Rect, Transform};
 pub use glam;
 pub use num::level::SimdLevel;

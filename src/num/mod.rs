@@ -1,4 +1,4 @@
-//! Numbers: fixed point, reproducible trigonometry, SIMD lanes and levels.
+//! Numbers and machinery: fixed point, reproducible trigonometry, SIMD lanes and levels, threads.
 
 pub(crate) mod fixed;
 pub(crate) mod lanes;

@@ -32,3 +32,8 @@ pub(crate) fn exp(x: f64) -> f64 {
 pub(crate) fn pow(base: f64, exponent: f64) -> f64 {
     libm::pow(base, exponent)
 }
+
+/// The logarithm of `x` to base 2.
+pub(crate) fn log2(x: f64) -> f64 {
+    libm::log2(x)
+}

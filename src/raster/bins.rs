@@ -227,7 +227,10 @@ fn list_by_band(bands: &mut [BandList], points: &[FixedPoint], start: usize, fir
     for (index, pair) in (start as u32..).zip(points.get(start..).unwrap_or(&[]).windows(2)) {
         let [from, to] = pair else { break };
         let (low, high) = if from.y < to.y { (from.y, to.y) } else { (to.y, from.y) };
-        // Horizontal edges are of their row's band: for exact coverage they matter.
+        // Horizontal edges inside of a row matter to exact coverage.
+        if low == high && low & (fixed::ONE - 1) == 0 {
+            continue;
+        }
         let first = ((low - first_top) >> band_shift) as usize;
         let last = ((high.max(low + 1) - 1 - first_top) >> band_shift) as usize;
         if first == last {

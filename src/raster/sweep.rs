@@ -28,6 +28,11 @@ pub(crate) trait BlockSink<S: Simd> {
         let _ = index;
         true
     }
+    /// Whether blocks in which coverage differs matter: if not, they may be left out.
+    #[inline(always)]
+    fn wants_edges(&self) -> bool {
+        true
+    }
     /// Coverage of the block `index` (16 columns each) of the strip.
     fn block(&mut self, simd: S, index: usize, mask: &MaskBlock);
     /// Blocks `start..end` are covered by the same value along each row.
@@ -106,7 +111,7 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
                 done = index + 1;
                 continue;
             }
-            if !sink.wants(index) {
+            if !(sink.wants_edges() && sink.wants(index)) {
                 for column in columns.iter_mut() {
                     cover += i32x8::load_array_ref(simd, column);
                     *column = [0; BLOCK_HEIGHT];
@@ -189,13 +194,13 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
     let whole = |index: usize| left <= (index as i32) << BLOCK_SHIFT && right >= (index as i32 + 1) << BLOCK_SHIFT;
     let start = if whole(first) { first } else { first + 1 };
     let end = if whole(last) { last + 1 } else { last };
-    if start > first && sink.wants(first) {
+    if start > first && sink.wants_edges() && sink.wants(first) {
         sink.block(simd, first, &edge_block(first));
     }
     if start < end {
         sink.run(simd, start, end, &rows);
     }
-    if end <= last && (last > first || start == first) && sink.wants(last) {
+    if end <= last && (last > first || start == first) && sink.wants_edges() && sink.wants(last) {
         sink.block(simd, last, &edge_block(last));
     }
 }

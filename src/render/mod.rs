@@ -24,7 +24,6 @@ pub use settings::RenderSettings;
 use crate::display_list::DisplayList;
 use crate::error::Result;
 use crate::geom::IntRect;
-use crate::pool;
 use crate::surface::PixmapMut;
 
 /// Working memory that outlives a frame: after the first, drawing alike frames allocates nothing.
@@ -57,7 +56,7 @@ impl Renderer {
         let Some(chunks) = self.chunks.get_mut(..chunk_count) else { return planned };
         let ranges = prepare::split(list.commands.len(), chunk_count);
         let jobs: Vec<_> = chunks.iter_mut().zip(ranges).collect();
-        pool::for_each(settings.threads, jobs, |(chunk, range)| {
+        crate::pool::for_each(settings.threads, jobs, |(chunk, range)| {
             chunk.prepare(list, &plan, range, frame, bands, band_height.trailing_zeros(), settings.level);
         });
 
@@ -66,7 +65,7 @@ impl Renderer {
         let stride = target.stride();
         let jobs: Vec<_> =
             target.bytes_mut().chunks_mut(stride * band_height as usize).enumerate().take(bands).collect();
-        pool::for_each(settings.threads, jobs, |(index, rows)| {
+        crate::pool::for_each(settings.threads, jobs, |(index, rows)| {
             let mut own = scratch.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
             let top = index as u32 * band_height;
             let surface =

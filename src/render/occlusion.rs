@@ -18,21 +18,25 @@ pub(super) struct Occlusion {
     hidden: Vec<u64>,
     /// Words of `hidden` per strip.
     words: usize,
-    /// The shape, by its place in the band, and the block; the front shape's first.
+    /// The front shape's first.
     claims: Vec<Claim>,
+    /// How many blocks are hidden.
+    count: usize,
 }
 
+/// Blocks of one word of `hidden` that a shape claims.
 #[derive(Clone, Copy, Debug)]
 struct Claim {
     order: u32,
-    strip: u16,
-    block: u16,
+    word: u32,
+    blocks: u64,
 }
 
 impl Occlusion {
     /// Nothing is hidden.
     pub(super) fn reset(&mut self, blocks: usize, strips: usize) {
         self.claims.clear();
+        self.count = 0;
         self.words = blocks.div_ceil(64);
         self.hidden.clear();
         self.hidden.resize(self.words * strips, 0);
@@ -45,7 +49,7 @@ impl Occlusion {
 
     /// How many blocks are hidden.
     pub(super) fn count(&self) -> usize {
-        self.claims.len()
+        self.count
     }
 
     #[inline(always)]
@@ -81,19 +85,27 @@ impl Occlusion {
     #[inline(always)]
     pub(super) fn release(&mut self, order: u32) {
         while let Some(claim) = self.claims.pop_if(|claim| claim.order <= order) {
-            let (strip, block) = (usize::from(claim.strip), usize::from(claim.block));
-            if let Some(word) = self.hidden.get_mut(strip * self.words + block / 64) {
-                *word &= !(1 << (block % 64));
+            if let Some(word) = self.hidden.get_mut(claim.word as usize) {
+                *word &= !claim.blocks;
             }
         }
     }
 
-    fn claim(&mut self, order: u32, strip: usize, block: usize) {
-        if let Some(word) = self.hidden.get_mut(strip * self.words + block / 64)
-            && *word >> (block % 64) & 1 == 0
-        {
-            *word |= 1 << (block % 64);
-            self.claims.push(Claim { order, strip: strip as u16, block: block as u16 });
+    /// Claims those of the blocks `start..end` that no shape further in front has.
+    fn claim(&mut self, order: u32, strip: usize, start: usize, end: usize) {
+        for index in start / 64..end.div_ceil(64) {
+            let first = index * 64;
+            let low = u64::MAX << start.saturating_sub(first).min(63);
+            let high = u64::MAX >> (first + 64).saturating_sub(end).min(63);
+            let place = strip * self.words + index;
+            if let Some(word) = self.hidden.get_mut(place) {
+                let blocks = low & high & !*word;
+                if blocks != 0 {
+                    *word |= blocks;
+                    self.count += blocks.count_ones() as usize;
+                    self.claims.push(Claim { order, word: place as u32, blocks });
+                }
+            }
         }
     }
 }
@@ -113,24 +125,19 @@ pub(super) struct ClaimSink<'a> {
 }
 
 impl<S: Simd> BlockSink<S> for ClaimSink<'_> {
+    // A block with edges in it is hardly ever covered whole.
     #[inline(always)]
-    fn wants(&self, index: usize) -> bool {
-        !self.occlusion.is_hidden(self.strip, index)
+    fn wants_edges(&self) -> bool {
+        false
     }
 
     #[inline(always)]
-    fn block(&mut self, _simd: S, index: usize, mask: &MaskBlock) {
-        if mask.iter().take(self.rows).all(|row| *row == [255; BLOCK_WIDTH]) {
-            self.occlusion.claim(self.order, self.strip, index);
-        }
-    }
+    fn block(&mut self, _simd: S, _index: usize, _mask: &MaskBlock) {}
 
     #[inline(always)]
     fn run(&mut self, _simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
         if rows.iter().take(self.rows).all(|row| *row == 255) {
-            for index in start..end {
-                self.occlusion.claim(self.order, self.strip, index);
-            }
+            self.occlusion.claim(self.order, self.strip, start, end);
         }
     }
 }
@@ -145,11 +152,11 @@ mod tests {
         occlusion.reset(70, 2);
         let bounds = IntRect::from_ltrb(17, 0, 70 * 16, 16);
         assert_eq!(occlusion.visible(1, bounds), (1, 70));
-        occlusion.claim(9, 1, 1);
-        occlusion.claim(9, 1, 69);
+        occlusion.claim(9, 1, 1, 2);
+        occlusion.claim(9, 1, 69, 70);
         // The one in front keeps it.
-        occlusion.claim(4, 1, 69);
-        occlusion.claim(4, 1, 2);
+        occlusion.claim(4, 1, 69, 70);
+        occlusion.claim(4, 1, 2, 3);
         assert_eq!((occlusion.visible(1, bounds), occlusion.visible(0, bounds)), ((3, 69), (1, 70)));
         assert_eq!(occlusion.visible(1, IntRect::from_ltrb(16, 0, 48, 16)), (3, 3));
         occlusion.release(3);
@@ -157,6 +164,11 @@ mod tests {
         occlusion.release(4);
         assert!(!occlusion.is_hidden(1, 2) && occlusion.is_hidden(1, 1) && occlusion.is_hidden(1, 69));
         occlusion.release(9);
+        // A run over a word's end.
+        occlusion.claim(3, 0, 60, 67);
+        assert_eq!((occlusion.visible(0, bounds), occlusion.count()), ((1, 70), 10));
+        assert!((0..70).all(|block| occlusion.is_hidden(0, block) == (60..67).contains(&block)));
+        occlusion.release(3);
         assert!(!occlusion.is_some() && occlusion.visible(1, bounds) == (1, 70));
     }
 }

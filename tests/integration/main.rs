@@ -19,9 +19,15 @@ mod golden;
 #[cfg(feature = "cli")]
 mod hostile;
 mod reference;
+mod seeds_fragments;
+mod seeds_interpolation;
 mod seeds_lines;
+mod seeds_pipeline;
 mod seeds_polygons;
 mod seeds_sampling;
+mod seeds_scene;
+mod seeds_triangles;
+mod space_support;
 #[cfg(all(feature = "text", feature = "codec"))]
 mod suite;
 #[cfg(all(feature = "svg", feature = "codec"))]

@@ -5,7 +5,9 @@ pub(crate) mod circle;
 pub(crate) mod line;
 pub(crate) mod patch;
 pub(crate) mod polygon;
+pub(crate) mod rays;
 pub(crate) mod spectrum;
+pub(crate) mod triangle;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
