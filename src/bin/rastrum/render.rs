@@ -17,9 +17,6 @@ use crate::supervise::Supervisor;
 use crate::wire::{Source, Task};
 use crate::worker;
 
-/// Stack of a thread that draws what needs no supervision. Untouched pages cost nothing.
-const STACK: usize = 8 << 20;
-
 /// Draws every input.
 pub(crate) fn run(arguments: &RenderArguments) -> Result<Outcome, Failure> {
     let fonts = Fonts::new(&arguments.fonts)?;
@@ -40,10 +37,18 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<Outcome, Failure> {
     // A panic is told as this program tells problems.
     panic::set_hook(Box::new(|_| {}));
 
-    let processors = thread::available_parallelism().map_or(1, usize::from);
-    let workers = arguments.jobs.map_or(processors, usize::from).min(jobs.len());
+    // Asking costs a tenth of a millisecond.
+    let processors = || thread::available_parallelism().map_or(1, usize::from);
+    let workers = if jobs.len() == 1 { 1 } else { arguments.jobs.map_or_else(processors, usize::from).min(jobs.len()) };
     let threads = arguments.threads.unwrap_or(if workers > 1 { 1 } else { 0 });
     let mut reports = Reports::new(arguments, &jobs);
+    if workers == 1 {
+        let mut supervisor = Supervisor::new(arguments);
+        for (index, job) in jobs.iter().enumerate() {
+            reports.add(index, draw(job, threads, arguments, &fonts, &mut supervisor));
+        }
+        return reports.finish();
+    }
     let next = AtomicUsize::new(0);
     thread::scope(|scope| {
         let (sender, receiver) = mpsc::channel();
@@ -59,7 +64,6 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<Outcome, Failure> {
                 }
             };
             thread::Builder::new()
-                .stack_size(STACK)
                 .spawn_scoped(scope, work)
                 .map_err(|error| Failure::new(format!("no thread to draw on: {error}; try -j 1")))?;
         }
