@@ -4,6 +4,7 @@ mod accuracy;
 mod compare;
 mod drawings;
 mod engines;
+mod filters;
 mod measure;
 mod options;
 mod peak;
@@ -43,6 +44,10 @@ fn run(options: &Options) -> Result<bool, String> {
     }
     if options.list {
         list(options)?;
+        return Ok(true);
+    }
+    if options.filters {
+        print!("{}", filters::table(options.rounds)?);
         return Ok(true);
     }
     if let Some(workload) = &options.peak_of {

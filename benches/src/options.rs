@@ -19,6 +19,7 @@ cargo run --release -- [options]
   --no-peak            do not measure peak memory
   --no-accuracy        do not measure accuracy
   --scaling            measure how cost grows with shapes, vertices, pixels and layers, and nothing else
+  --filters            measure SVG filters beside resvg's, and nothing else
   --list               name the workloads and engines
   --json               print JSON instead of a table
   --help               print this";
@@ -33,6 +34,7 @@ pub struct Options {
     pub peak: bool,
     pub accuracy: bool,
     pub scaling: bool,
+    pub filters: bool,
     pub list: bool,
     pub json: bool,
     pub help: bool,
@@ -52,6 +54,7 @@ impl Options {
             peak: true,
             accuracy: true,
             scaling: false,
+            filters: false,
             list: false,
             json: false,
             help: false,
@@ -74,6 +77,7 @@ impl Options {
                 "--no-peak" => options.peak = false,
                 "--no-accuracy" => options.accuracy = false,
                 "--scaling" => options.scaling = true,
+                "--filters" => options.filters = true,
                 "--list" => options.list = true,
                 "--json" => options.json = true,
                 "--help" | "-h" => options.help = true,

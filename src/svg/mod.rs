@@ -9,6 +9,7 @@ mod convert;
 mod filter;
 mod group;
 mod image;
+mod limits;
 mod links;
 mod pattern;
 mod read;
@@ -16,8 +17,9 @@ mod render;
 mod shape;
 mod warning;
 
+pub use limits::ParseLimits;
 pub use links::image_resolver;
-pub use read::{parse, unpack};
+pub use read::{parse, parse_with_limits, unpack};
 pub use usvg;
 pub use warning::{Warning, WarningKind};
 

@@ -5,6 +5,7 @@ use std::io::Read as _;
 
 use flate2::read::MultiGzDecoder;
 
+use super::limits::ParseLimits;
 use crate::error::{Error, Result};
 
 /// The SVG text in a file's bytes: unpacked if they are gzip (`.svgz`), else as they are.
@@ -32,14 +33,38 @@ pub fn unpack(bytes: &[u8], limit: usize) -> Result<Cow<'_, [u8]>> {
 /// Parses the bytes of an SVG file, packed (`.svgz`) or not.
 ///
 /// usvg recurses into nested elements: a thread with a stack of 16 MiB or more is wanted for files from
-/// anywhere.
+/// anywhere. There are files of a few kilobytes that keep it busy for minutes or overflow any stack: see
+/// [`parse_with_limits`].
 ///
 /// # Errors
 /// [`Error::Format`] if the data is not an SVG; [`Error::Limit`] if it unpacks to more than 256 MiB.
 pub fn parse(bytes: &[u8], options: &usvg::Options<'_>) -> Result<usvg::Tree> {
     let text = unpack(bytes, UNPACKED_LIMIT)?;
-    let text = std::str::from_utf8(&text)
-        .map_err(|error| Error::Format(format!("not an SVG: byte {} is not UTF-8", error.valid_up_to())))?;
+    parse_text(utf8(&text)?, options)
+}
+
+/// Parses as [`parse`] does what stays within limits that are checked before: the length, how deep elements lie, and how
+/// much there is when references are replaced by what they refer to.
+///
+/// The estimate covers what attributes say, not style sheets; a file made to harm can still ask for more than it seems to,
+/// and cyclic patterns overflow the stack. Who draws files from anyone does so in a process of its own, as the
+/// program does.
+///
+/// # Errors
+/// As [`parse`]; [`Error::Limit`] for what is over a limit.
+pub fn parse_with_limits(bytes: &[u8], options: &usvg::Options<'_>, limits: &ParseLimits) -> Result<usvg::Tree> {
+    let text = unpack(bytes, limits.bytes)?;
+    let text = utf8(&text)?;
+    limits.check(text)?;
+    parse_text(text, options)
+}
+
+fn utf8(text: &[u8]) -> Result<&str> {
+    std::str::from_utf8(text)
+        .map_err(|error| Error::Format(format!("not an SVG: byte {} is not UTF-8", error.valid_up_to())))
+}
+
+fn parse_text(text: &str, options: &usvg::Options<'_>) -> Result<usvg::Tree> {
     usvg::Tree::from_str(text, options).map_err(|error| match error {
         usvg::Error::ParsingFailed(usvg::roxmltree::Error::NodesLimitReached) => {
             Error::Limit("the SVG nests its elements more than 1,024 deep".to_owned())

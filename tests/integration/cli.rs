@@ -159,6 +159,75 @@ fn one_element_is_drawn_at_its_own_size() {
 }
 
 #[test]
+fn the_area_is_the_page_or_what_is_drawn() {
+    let folder = Folder::new();
+    folder.write(
+        "a.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><rect id='r' x='2' y='3' width='4' height='2' fill='red'/></svg>",
+    );
+    for (arguments, size, at, expected) in [
+        ([].as_slice(), (9, 9), (3, 4), RED),
+        (&["--export-area", "page"], (9, 9), (0, 0), [0; 4]),
+        (&["--export-area", "drawing"], (4, 2), (0, 0), RED),
+        (&["--export-id", "r"], (4, 2), (3, 1), RED),
+        (&["--export-id", "r", "--export-area", "drawing"], (4, 2), (3, 1), RED),
+        (&["--export-id", "r", "--export-area", "page"], (9, 9), (5, 4), RED),
+    ] {
+        let arguments: Vec<_> = ["render", "a.svg"].iter().chain(arguments).copied().collect();
+        assert_success(&folder.run(&arguments));
+        let pixmap = folder.read("a.png");
+        assert_eq!((pixmap.width(), pixmap.height()), size, "{arguments:?}");
+        assert_eq!(pixmap.pixel(at.0, at.1), Some(expected), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_style_sheet_and_languages_apply() {
+    let folder = Folder::new();
+    folder.write("a.css", "rect { fill: blue }").write(
+        "a.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='4' height='2'><rect width='2' height='2' fill='red'/>\
+         <switch><rect systemLanguage='fr' x='2' width='2' height='2' style='fill:red'/><g/></switch></svg>",
+    );
+    assert_success(&folder.run(&["render", "a.svg", "--stylesheet", "a.css", "--languages", "de,fr"]));
+    assert_eq!((folder.read("a.png").pixel(0, 0), folder.read("a.png").pixel(3, 1)), (Some(BLUE), Some(RED)));
+    assert_success(&folder.run(&["render", "a.svg"]));
+    assert_eq!((folder.read("a.png").pixel(0, 0), folder.read("a.png").pixel(3, 1)), (Some(RED), Some([0; 4])));
+    assert_failure(&folder.run(&["render", "a.svg", "--stylesheet", "b.css"]), "style sheet b.css: no such file");
+}
+
+#[test]
+fn elements_are_listed_with_their_boxes() {
+    let folder = Folder::new();
+    folder.write(
+        "a.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' width='9' height='9'><g id='a,b' transform='translate(1.5 0)'>\
+         <rect id='r' x='2' y='3' width='4' height='2' stroke='red'/></g><path d='M0 0H1V1Z'/></svg>",
+    );
+    let output = folder.run(&["render", "a.svg", "--query-all"]);
+    assert_success(&output);
+    assert_eq!(text(&output.stdout), "a\\u{2c}b,3,2.5,5,3\nr,3,2.5,5,3\n");
+    assert!(!folder.has("a.png"));
+    let output = folder.run(&["render", "a.svg", "--query-all=json"]);
+    assert_eq!(
+        text(&output.stdout),
+        "[{\"id\":\"a,b\",\"x\":3,\"y\":2.5,\"width\":5,\"height\":3},{\"id\":\"r\",\"x\":3,\"y\":2.5,\"width\":5,\"height\":3}]\n"
+    );
+    folder.write("b.svg", FLAG);
+    let output = folder.run(&["render", "a.svg", "b.svg", "--query-all"]);
+    assert!(text(&output.stdout).ends_with("b.svg:right,2,0,2,2\n"), "{output:?}");
+}
+
+#[test]
+fn fonts_are_listed() {
+    let folder = Folder::new();
+    let output = folder.run(&["render", "--list-fonts", "--no-system-fonts"]);
+    assert_success(&output);
+    assert_eq!(text(&output.stdout), "");
+    assert_failure(&folder.run(&["render", "--list-fonts", "--font-dir", "none"]), "none");
+}
+
+#[test]
 fn standard_input_to_standard_output() {
     let folder = Folder::new();
     for arguments in [["render", "-"].as_slice(), &["render", "-", "-o", "-"]] {
@@ -391,6 +460,9 @@ fn wrong_arguments_exit_with_2() {
         &["render", "a.svg", "-z", "2", "-w", "3"],
         &["render", "a.svg", "--antialias", "supersample=99"],
         &["render", "a.svg", "--font-file", "no-such-font.ttf"],
+        &["render", "a.svg", "--max-memory", "lots"],
+        &["render", "a.svg", "--max-time", "0"],
+        &["render", "a.svg", "--query-all=xml"],
     ] {
         let output = folder.run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");

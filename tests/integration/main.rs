@@ -16,6 +16,8 @@ mod determinism;
 mod fixtures;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod golden;
+#[cfg(feature = "cli")]
+mod hostile;
 mod reference;
 mod seeds_fragments;
 mod seeds_interpolation;

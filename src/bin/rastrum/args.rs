@@ -24,6 +24,8 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Render(Box<RenderArguments>),
+    #[command(hide = true)]
+    Worker(Box<RenderArguments>),
     Info(InfoArguments),
     Completions(CompletionsArguments),
     Man(ManArguments),
@@ -47,7 +49,7 @@ Examples:
 pub(crate) struct RenderArguments {
     /// SVG files, folders (searched for .svg and .svgz, recursively), patterns such as 'icons/*.svg', or - for
     /// standard input.
-    #[arg(required = true, value_name = "INPUT")]
+    #[arg(required_unless_present = "list_fonts", value_name = "INPUT")]
     pub(crate) inputs: Vec<OsString>,
 
     /// Where the picture goes: a file, a folder, a name with {stem} (the input's name without its ending) and
@@ -80,11 +82,38 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "ID")]
     pub(crate) export_id: Option<String>,
 
+    /// What the picture shows: the page, or the box of all that is drawn (with --export-id, of the element). Default:
+    /// the page; with --export-id, the element's box.
+    #[arg(long, value_name = "AREA")]
+    pub(crate) export_area: Option<ExportArea>,
+
+    /// Draw nothing; print the elements that have an id, and the boxes that they draw on: a line of
+    /// id,x,y,width,height each, or (=json) one array of objects.
+    #[arg(long, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text", conflicts_with = "output")]
+    pub(crate) query_all: Option<QueryFormat>,
+
+    /// CSS file whose rules apply before those of the drawing.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stylesheet: Option<PathBuf>,
+
+    /// Languages for the `systemLanguage` attribute, the most wanted first.
+    #[arg(long, value_name = "LANGUAGES", value_delimiter = ',', default_value = "en")]
+    pub(crate) languages: Vec<String>,
+
+    /// Stop a file that takes longer than so many seconds.
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
+    pub(crate) max_time: f64,
+
+    /// Stop a file that takes more memory (a number of bytes, or with K, M, G, KiB, MiB, GiB). On Linux only.
+    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = bytes)]
+    pub(crate) max_memory: u64,
+
     /// How edges are smoothed: analytic, exact, none, or supersample=N (N × N samples a pixel, 1 to 16).
     #[arg(long, value_name = "MODE", default_value = "analytic", value_parser = antialias)]
     pub(crate) antialias: Antialias,
 
-    /// Folder that links to images start from. Default: the input's folder.
+    /// Folder that links to images start from. Default: the input's folder. Absolute links to files outside of it are
+    /// refused.
     #[arg(long, value_name = "DIR")]
     pub(crate) resources_dir: Option<PathBuf>,
 
@@ -125,6 +154,10 @@ pub(crate) struct FontArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) font_file: Vec<PathBuf>,
 
+    /// Draw nothing; print the fonts: family, style and file.
+    #[arg(long)]
+    pub(crate) list_fonts: bool,
+
     /// Do not load the system's fonts.
     #[arg(long)]
     pub(crate) no_system_fonts: bool,
@@ -156,6 +189,24 @@ pub(crate) enum Timings {
     Json,
 }
 
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExportArea {
+    /// The page: the drawing's own size.
+    Page,
+    /// The box of what is drawn.
+    Drawing,
+}
+
+/// How elements are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum QueryFormat {
+    /// id,x,y,width,height, a line each.
+    Text,
+    /// One array of objects.
+    Json,
+}
+
 /// Show the version, the SIMD levels and the threads of this machine.
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
@@ -181,6 +232,31 @@ fn factor(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(factor) if factor > 0.0 && factor.is_finite() => Ok(factor),
         _ => Err("must be a number above 0".to_owned()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 => Ok(seconds),
+        _ => Err("must be a number of seconds above 0".to_owned()),
+    }
+}
+
+fn bytes(text: &str) -> Result<u64, String> {
+    let wrong = || "must be a size such as 500000000, 512MiB or 4G".to_owned();
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let shift = match text.get(digits.len()..).unwrap_or_default().to_ascii_lowercase().as_str() {
+        "" | "b" => 0,
+        "k" | "kib" => 10,
+        "m" | "mib" => 20,
+        "g" | "gib" => 30,
+        "t" | "tib" => 40,
+        _ => return Err(wrong()),
+    };
+    let number: u64 = digits.trim().parse().map_err(|_| wrong())?;
+    match number.checked_mul(1 << shift) {
+        Some(bytes) if bytes > 0 => Ok(bytes),
+        _ => Err(wrong()),
     }
 }
 
@@ -228,6 +304,14 @@ mod tests {
         assert!(color("reddish").is_err());
         for bad in ["0", "-1", "nan", "inf", "x"] {
             assert!(factor(bad).is_err(), "{bad}");
+        }
+        assert_eq!((bytes("512MiB"), bytes("3 k"), bytes("7")), (Ok(512 << 20), Ok(3 << 10), Ok(7)));
+        for bad in ["0", "", "G", "-1M", "1X", "99999999999G", "1.5G"] {
+            assert!(bytes(bad).is_err(), "{bad}");
+        }
+        assert_eq!((seconds("0.5"), seconds("inf")), (Ok(0.5), Ok(f64::INFINITY)));
+        for bad in ["0", "-1", "nan", "x"] {
+            assert!(seconds(bad).is_err(), "{bad}");
         }
     }
 }

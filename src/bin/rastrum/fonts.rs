@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use rastrum::svg::usvg::fontdb::{Database, Family, ID, Query, Style, Weight};
+use rastrum::svg::usvg::fontdb::{Database, Family, ID, Query, Source, Style, Weight};
 use rastrum::svg::usvg::{Font, FontResolver, FontStyle};
 
 use crate::args::FontArguments;
@@ -60,6 +60,32 @@ fn any(font: &Font, database: &Database) -> Option<ID> {
     };
     notes::add(text);
     found
+}
+
+/// A line for each font: family, style, weight, and the file, with its number in a collection.
+pub(crate) fn list(arguments: &FontArguments) -> String {
+    let database = load(arguments);
+    let mut lines: Vec<String> = database
+        .faces()
+        .map(|face| {
+            let family = face.families.first().map_or("", |(name, _)| name.as_str());
+            let style = match face.style {
+                Style::Normal => "normal",
+                Style::Italic => "italic",
+                Style::Oblique => "oblique",
+            };
+            let file = match &face.source {
+                Source::File(path) | Source::SharedFile(path, _) => path.display().to_string(),
+                Source::Binary(_) => String::new(),
+            };
+            let number = if face.index > 0 { format!("#{}", face.index) } else { String::new() };
+            let line = format!("{family}\t{style}\t{}\t{file}{number}", face.weight.0);
+            // A line break in a name would forge a font.
+            line.replace(['\n', '\r'], " ") + "\n"
+        })
+        .collect();
+    lines.sort();
+    lines.concat()
 }
 
 fn load(arguments: &FontArguments) -> Database {

@@ -2,16 +2,22 @@
 
 mod args;
 mod completions;
+mod draw;
 mod fonts;
 mod info;
 mod json;
 mod man;
 mod notes;
 mod plan;
+mod query;
 mod render;
 mod report;
 mod reports;
+mod simple;
 mod size;
+mod supervise;
+mod wire;
+mod worker;
 
 use std::process::ExitCode;
 
@@ -34,6 +40,7 @@ fn main() -> ExitCode {
 fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
+        Command::Worker(arguments) => worker::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
         Command::Man(arguments) => man::run(&arguments),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::args::RenderArguments;
+use crate::args::{QueryFormat, RenderArguments};
 use crate::json;
 use crate::plan::Job;
 use crate::report::{self, Failure, Outcome};
@@ -20,6 +20,8 @@ pub(crate) struct Done {
     /// Encoding and writing.
     pub(crate) encode: Duration,
     pub(crate) warnings: Vec<String>,
+    /// What goes to standard output.
+    pub(crate) output: Vec<u8>,
 }
 
 /// Takes results in any order.
@@ -29,6 +31,8 @@ pub(crate) struct Reports<'a> {
     bar: ProgressBar,
     /// Lines of `--timings`, in the order of the jobs.
     timings: Vec<Option<String>>,
+    /// What goes to standard output, in the order of the jobs.
+    outputs: Vec<Vec<u8>>,
     /// The failure of the only job, or how many of several failed.
     failure: Option<Failure>,
     failed: usize,
@@ -44,7 +48,15 @@ impl<'a> Reports<'a> {
         } else {
             ProgressBar::hidden()
         };
-        Self { arguments, jobs, bar, timings: vec![None; jobs.len()], failure: None, failed: 0 }
+        Self {
+            arguments,
+            jobs,
+            bar,
+            timings: vec![None; jobs.len()],
+            outputs: vec![Vec::new(); jobs.len()],
+            failure: None,
+            failed: 0,
+        }
     }
 
     /// Tells how one job ended.
@@ -59,6 +71,10 @@ impl<'a> Reports<'a> {
                 }
                 if self.arguments.verbose {
                     self.say(&Failure::new(summary(job, &done)));
+                }
+                let labelled = self.labelled(job, &done);
+                if let Some(output) = self.outputs.get_mut(index) {
+                    *output = labelled;
                 }
                 if self.arguments.timings.is_some()
                     && let Some(line) = self.timings.get_mut(index)
@@ -78,6 +94,9 @@ impl<'a> Reports<'a> {
     /// Tells what is told at the end.
     pub(crate) fn finish(self) -> Result<Outcome, Failure> {
         self.bar.finish_and_clear();
+        for output in self.outputs.iter().filter(|output| !output.is_empty()) {
+            report::print(output)?;
+        }
         let lines: String = self.timings.iter().flatten().map(String::as_str).collect();
         if !lines.is_empty() {
             if self.jobs.iter().any(|job| job.output.is_none()) {
@@ -94,6 +113,24 @@ impl<'a> Reports<'a> {
             return Ok(Outcome::SomeFailed);
         }
         Ok(Outcome::Done)
+    }
+
+    /// What goes to standard output: of one input as it is, of several with their names.
+    fn labelled(&self, job: &Job, done: &Done) -> Vec<u8> {
+        match self.arguments.query_all {
+            Some(format) if self.jobs.len() > 1 => {
+                let text = String::from_utf8_lossy(&done.output);
+                let name = job.name();
+                match format {
+                    QueryFormat::Text => text.lines().map(|line| format!("{name}:{line}\n")).collect(),
+                    QueryFormat::Json => {
+                        format!("{{\"input\":{},\"elements\":{}}}\n", json::string(&name), text.trim_end())
+                    }
+                }
+                .into_bytes()
+            }
+            _ => done.output.clone(),
+        }
     }
 
     fn say(&self, line: &Failure) {

@@ -1,0 +1,321 @@
+//! Files made to harm, through the program: each ends in a picture or in one line, and never in a backtrace.
+//!
+//! Nothing here looks at the clock but the program itself, whose `--max-time` would make a failure of what has to be drawn.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rastrum::Pixmap;
+
+/// A folder of its own for each test, gone afterwards.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = format!("rastrum-hostile-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(name);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn run(&self, svg: &str, arguments: &[&str]) -> Output {
+        fs::write(self.0.join("a.svg"), svg).unwrap();
+        let _ = fs::remove_file(self.0.join("a.png"));
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rastrum"));
+        command.current_dir(&self.0).args(["render", "a.svg", "--no-system-fonts"]).args(arguments);
+        command.stdin(Stdio::null()).output().unwrap()
+    }
+
+    fn picture(&self) -> Option<Pixmap> {
+        Pixmap::load_png(self.0.join("a.png")).ok()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn svg(content: &str) -> String {
+    format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' width='64' height='64'>{content}</svg>"
+    )
+}
+
+/// The program said no, in one line.
+#[track_caller]
+fn assert_refused(name: &str, output: &Output) {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{name}: {said}");
+    assert!(said.starts_with("rastrum: a.svg: ") && said.lines().count() == 1, "{name}: {said}");
+    assert!(!said.contains("panicked") && !said.contains("internal error"), "{name}: {said}");
+}
+
+/// A picture, or one line.
+#[track_caller]
+fn assert_ends(name: &str, folder: &Folder, content: &str) -> bool {
+    let output = folder.run(content, &["--max-time", "20", "--max-memory", "1GiB"]);
+    if output.status.code() == Some(0) {
+        assert!(folder.picture().is_some(), "{name}");
+        return true;
+    }
+    assert_refused(name, &output);
+    assert!(folder.picture().is_none(), "{name}");
+    false
+}
+
+/// A picture.
+#[track_caller]
+fn assert_drawn(name: &str, folder: &Folder, content: &str) -> Pixmap {
+    let output = folder.run(content, &["--max-time", "60", "--max-memory", "1GiB"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{name}: {said}");
+    folder.picture().unwrap()
+}
+
+#[test]
+fn what_refers_to_itself_ends() {
+    let folder = Folder::new();
+    let rect = "<rect width='64' height='64' fill='red'/>";
+    for (name, content) in [
+        ("use", "<use id='a' href='#a'/><g id='b'><use href='#c'/></g><g id='c'><use href='#b'/></g>".to_owned()),
+        (
+            "pattern",
+            "<pattern id='p' width='8' height='8' patternUnits='userSpaceOnUse'><rect width='4' height='4' fill='url(#p)'/></pattern>\
+             <rect width='64' height='64' fill='url(#p)'/>"
+                .to_owned(),
+        ),
+        (
+            "patterns in a circle",
+            "<pattern id='p' width='8' height='8' patternUnits='userSpaceOnUse'><rect width='4' height='4' fill='url(#q)'/></pattern>\
+             <pattern id='q' width='8' height='8' patternUnits='userSpaceOnUse'><rect width='4' height='4' stroke='url(#p)'/></pattern>\
+             <rect width='64' height='64' fill='url(#p)'/>"
+                .to_owned(),
+        ),
+        (
+            "a pattern in the mask of text in it",
+            "<pattern id='p' width='8' height='8' patternUnits='userSpaceOnUse'><text y='9' mask='url(#m)'>a</text></pattern>\
+             <mask id='m'><rect width='9' height='9' fill='url(#p)'/></mask><rect width='64' height='64' fill='url(#p)'/>"
+                .to_owned(),
+        ),
+        ("mask", format!("<mask id='m' mask='url(#m)'><g mask='url(#m)'>{rect}</g></mask><g mask='url(#m)'>{rect}</g>")),
+        (
+            "clip",
+            format!("<clipPath id='c' clip-path='url(#c)'><path d='M0 0H9V9Z' clip-path='url(#c)'/></clipPath><g clip-path='url(#c)'>{rect}</g>"),
+        ),
+        (
+            "filter",
+            format!("<filter id='f'><feImage href='#r'/></filter><g id='r' filter='url(#f)'>{rect}</g>"),
+        ),
+        (
+            "marker",
+            "<marker id='m'><path d='M0 0H9' marker-start='url(#m)'/></marker><path d='M0 0H9' marker-start='url(#m)'/>".to_owned(),
+        ),
+        ("image", "<image href='a.svg' width='64' height='64'/>".to_owned()),
+    ] {
+        assert_ends(name, &folder, &svg(&content));
+    }
+}
+
+#[test]
+fn few_lines_that_ask_for_much_end() {
+    let folder = Folder::new();
+    let levels = |of: &dyn Fn(usize) -> String| (0..9).map(of).collect::<String>();
+    let masks = levels(&|i| {
+        let shape = format!("<rect width='64' height='64' fill='#fff' mask='url(#m{})'/>", i + 1);
+        format!("<mask id='m{i}'>{}</mask>", shape.repeat(10))
+    });
+    let clips = levels(&|i| {
+        let shape = format!("<path d='M0 0H64V64Z' clip-path='url(#c{})'/>", i + 1);
+        format!("<clipPath id='c{i}'>{}</clipPath>", shape.repeat(10))
+    });
+    let markers = levels(&|i| {
+        let shape = format!("<path d='M0 0h1h1h1h1h1h1' marker-mid='url(#k{})'/>", i + 1);
+        format!("<marker id='k{i}' overflow='visible'>{}</marker>", shape.repeat(4))
+    });
+    let uses = levels(&|i| format!("<g id='u{i}'>{}</g>", format!("<use href='#u{}'/>", i + 1).repeat(10)));
+    let selectors: String = (0..400).map(|i| format!("{} .x{i}{{fill:red}}", "g ".repeat(40))).collect::<String>();
+    let nested =
+        format!("{}{}{}", "<g>".repeat(400), "<path class='y' d='M0 0H1V1Z'/>".repeat(500), "</g>".repeat(400));
+    let laughs: String = (1..12).map(|i| format!("<!ENTITY l{i} '{}'>", format!("&l{};", i - 1).repeat(10))).collect();
+    let long = "x".repeat(1 << 20);
+    for (name, content) in [
+        (
+            "masks",
+            svg(&format!(
+                "{masks}<mask id='m9'><path d='M0 0H9V9Z'/></mask><rect width='64' height='64' mask='url(#m0)'/>"
+            )),
+        ),
+        (
+            "clips",
+            svg(&format!(
+                "{clips}<clipPath id='c9'><path d='M0 0H9V9Z'/></clipPath><rect width='64' height='64' clip-path='url(#c0)'/>"
+            )),
+        ),
+        (
+            "markers",
+            svg(&format!(
+                "{markers}<marker id='k9'><path d='M0 0H9V9Z'/></marker><path d='M0 0h1h1h1' marker-mid='url(#k0)'/>"
+            )),
+        ),
+        ("uses", svg(&format!("<defs>{uses}<path id='u9' d='M0 0H9V9Z'/></defs><use href='#u0'/>"))),
+        ("selectors", svg(&format!("<style>{selectors}</style>{nested}"))),
+        ("tspans", svg(&format!("<text>{}a{}</text>", "<tspan>".repeat(5000), "</tspan>".repeat(5000)))),
+        ("a billion laughs", format!("<!DOCTYPE svg [<!ENTITY l0 'ha'>{laughs}]>{}", svg("<desc>&l11;</desc>"))),
+        (
+            "a long entity",
+            format!("<!DOCTYPE svg [<!ENTITY a '{long}'>]>{}", svg(&format!("<desc>{}</desc>", "&a;".repeat(4000)))),
+        ),
+    ] {
+        assert_ends(name, &folder, &content);
+    }
+}
+
+#[test]
+fn extreme_numbers_are_drawn_or_refused() {
+    let folder = Folder::new();
+    let huge = "<svg xmlns='http://www.w3.org/2000/svg' width='1e9' height='1e9'><rect width='9' height='9'/></svg>";
+    assert!(!assert_ends("a picture of 1e18 pixels", &folder, huge));
+    let filtered = |primitives: &str| {
+        svg(&format!(
+            "<filter id='f' filterUnits='userSpaceOnUse' x='-500000' y='-500000' width='1000000' height='1000000'>{primitives}</filter>\
+             <rect x='16' y='16' width='32' height='32' fill='red' filter='url(#f)'/>"
+        ))
+    };
+    let order = "1 ".repeat(300 * 300);
+    for (name, content) in [
+        ("a blur of 1e9", filtered("<feGaussianBlur stdDeviation='1e9'/>")),
+        ("a shadow far away", filtered("<feDropShadow dx='1e9' dy='-1e9' stdDeviation='1e9'/>")),
+        ("a radius of 1e6", filtered("<feMorphology operator='dilate' radius='1e6'/>")),
+        ("erosion by 1e6", filtered("<feMorphology radius='1e6'/>")),
+        ("a kernel of 300", filtered(&format!("<feConvolveMatrix order='300' kernelMatrix='{order}'/>"))),
+        ("1e6 octaves", filtered("<feTurbulence baseFrequency='1e30' numOctaves='1000000'/>")),
+        ("noise of nothing", filtered("<feTurbulence baseFrequency='0' numOctaves='1000000' stitchTiles='stitch'/>")),
+        ("an offset of 1e30", filtered("<feOffset dx='1e30' dy='-1e30'/><feTile/>")),
+        ("displacement by 1e30", filtered("<feDisplacementMap in2='SourceGraphic' scale='1e30'/>")),
+        (
+            "light from 1e30",
+            filtered(
+                "<feDiffuseLighting surfaceScale='1e30'><fePointLight x='1e30' y='0' z='-1e30'/></feDiffuseLighting>",
+            ),
+        ),
+        (
+            "forty filters in each other",
+            svg(&format!(
+                "<filter id='f' x='-10' y='-10' width='30' height='30'><feGaussianBlur stdDeviation='200'/></filter>{}<rect width='9' height='9'/>{}",
+                "<g filter='url(#f)'>".repeat(40),
+                "</g>".repeat(40)
+            )),
+        ),
+        (
+            "a tile of 1e6",
+            svg(
+                "<pattern id='p' width='1e6' height='1e6' patternUnits='userSpaceOnUse'><rect width='5e5' height='5e5' fill='red'/></pattern>\
+                 <rect width='64' height='64' fill='url(#p)'/>",
+            ),
+        ),
+        (
+            "coordinates",
+            svg("<path d='M-1e30 -1e30L1e30 1e30L1e38 0Z' stroke='red' stroke-width='1e20' stroke-dasharray='1e-9'/>"),
+        ),
+    ] {
+        assert_drawn(name, &folder, &content);
+    }
+}
+
+#[test]
+fn a_path_of_300_000_segments_is_drawn() {
+    let mut data = "M0 0".to_owned();
+    let mut seed = 1_u32;
+    for _ in 0..300_000 {
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            seed >> 26
+        };
+        data += &format!("L{} {}", next(), next());
+    }
+    let path = format!("<path d='{data}' fill='red' fill-rule='evenodd' stroke='blue' stroke-width='.01'/>");
+    assert_drawn("segments", &Folder::new(), &svg(&path));
+}
+
+#[test]
+fn links_lead_to_files_around_the_drawing_only() {
+    let folder = Folder::new();
+    let picture = |name: &str, color| {
+        let mut pixmap = Pixmap::new(4, 4).unwrap();
+        pixmap.fill(color);
+        pixmap.save_png(folder.0.join(name)).unwrap();
+    };
+    picture("inside.png", rastrum::Color::RED);
+    let link = |link: &str| svg(&format!("<image href='{link}' width='64' height='64'/>"));
+    let middle = || folder.picture().unwrap().pixel(32, 32);
+    assert_eq!(folder.run(&link("inside.png"), &[]).status.code(), Some(0));
+    assert_eq!(middle(), Some([255, 0, 0, 255]));
+    // An absolute link to another folder, and the same with leave.
+    let other = Folder::new();
+    let mut pixmap = Pixmap::new(4, 4).unwrap();
+    pixmap.fill(rastrum::Color::BLUE);
+    pixmap.save_png(other.0.join("b.png")).unwrap();
+    let absolute = other.0.join("b.png");
+    let output = folder.run(&link(absolute.to_str().unwrap()), &[]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("outside"), "{output:?}");
+    assert_eq!(middle(), Some([0; 4]));
+    let leave = other.0.to_str().unwrap();
+    assert_eq!(folder.run(&link(absolute.to_str().unwrap()), &["--resources-dir", leave]).status.code(), Some(0));
+    assert_eq!(middle(), Some([0, 0, 255, 255]));
+    // What has no end.
+    for endless in ["/dev/zero", "file:///dev/zero", "/dev/stdin"] {
+        for arguments in [&[] as &[&str], &["--resources-dir", "/"]] {
+            let output = folder.run(&link(endless), arguments);
+            assert_eq!(output.status.code(), Some(0), "{endless}: {output:?}");
+            assert!(String::from_utf8_lossy(&output.stderr).contains("left out"), "{endless}: {output:?}");
+        }
+    }
+}
+
+#[test]
+fn text_without_fonts_is_left_out() {
+    let output = Folder::new().run(&svg("<text y='20'>words</text><rect width='9' height='9'/>"), &[]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no fonts"), "{output:?}");
+}
+
+#[test]
+fn time_and_memory_have_limits() {
+    let folder = Folder::new();
+    let long = "<svg xmlns='http://www.w3.org/2000/svg' width='6000' height='6000'><filter id='f'><feTurbulence baseFrequency='.1' numOctaves='20'/></filter>\
+                <rect width='6000' height='6000' filter='url(#f)'/></svg>";
+    let output = folder.run(long, &["--max-time", "0.05"]);
+    assert_refused("time", &output);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--max-time"), "{output:?}");
+    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1, "and nothing is left behind");
+    if cfg!(target_os = "linux") {
+        let output = folder.run(long, &["--max-memory", "64MiB"]);
+        assert_refused("memory", &output);
+        assert!(String::from_utf8_lossy(&output.stderr).contains("--max-memory"), "{output:?}");
+    }
+}
+
+#[test]
+fn after_a_file_that_ends_its_worker_the_next_is_drawn() {
+    let folder = Folder::new();
+    let good = svg("<rect width='64' height='64' fill='red'/>");
+    let bad = "<svg xmlns='http://www.w3.org/2000/svg' width='6000' height='6000'><filter id='f'><feTurbulence baseFrequency='.1' numOctaves='20'/></filter>\
+               <rect width='6000' height='6000' filter='url(#f)'/></svg>";
+    for (name, content) in [("1.svg", good.as_str()), ("2.svg", bad), ("3.svg", good.as_str())] {
+        fs::write(folder.0.join(name), content).unwrap();
+    }
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rastrum"));
+    let arguments = ["render", "1.svg", "2.svg", "3.svg", "-j", "1", "--max-time", "0.4"];
+    let output = command.current_dir(&folder.0).args(arguments).stdin(Stdio::null()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("1 of 3 files failed"), "{output:?}");
+    for name in ["1.png", "3.png"] {
+        assert_eq!(Pixmap::load_png(folder.0.join(name)).unwrap().pixel(9, 9), Some([255, 0, 0, 255]), "{name}");
+    }
+}
