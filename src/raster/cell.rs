@@ -12,24 +12,28 @@ use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 /// The accumulated value of a fully covered pixel.
 pub(crate) const FULL: i32 = 1 << 17;
 
-/// A column of a strip: one value per row.
-pub(crate) type Column = [i32; BLOCK_HEIGHT];
+/// A column of a strip: one value per row. Aligned, so that no vector of it straddles two cache lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C, align(32))]
+pub(crate) struct Column(pub(crate) [i32; BLOCK_HEIGHT]);
 
-/// Accumulators of the strips of one band.
+/// Accumulators of the strips of one band; zero between draws.
 #[derive(Debug, Default)]
 pub(crate) struct Accumulator {
-    /// Columns of strip after strip; zero between draws.
-    columns: Vec<Column>,
-    /// For each column which rows edges pass through. Kept for exact antialiasing only.
-    marks: Vec<Marks>,
-    /// One bit for each block of 16 columns that may hold values, strip after strip.
-    occupied: Vec<u64>,
+    strips: Vec<Strip>,
+}
+
+/// The accumulator of one strip.
+#[derive(Debug, Default)]
+pub(crate) struct Strip {
+    /// The band's columns, rounded up to blocks, and one block to spill into.
+    pub(crate) columns: Vec<Column>,
+    /// One bit for each block of 16 columns that may hold values.
+    pub(crate) occupied: Vec<u64>,
+    /// For each column which rows edges pass through; empty until exact antialiasing first needs it.
+    pub(super) marks: Vec<Marks>,
     /// Sums of more edges than `columns` can hold; empty but while a crowd of edges is added.
-    wide: Vec<[i64; BLOCK_HEIGHT]>,
-    /// Columns per strip: the band's, rounded up to blocks, and one block to spill into.
-    stride: usize,
-    /// Words of `occupied` per strip.
-    words: usize,
+    pub(super) wide: Vec<[i64; BLOCK_HEIGHT]>,
 }
 
 impl Accumulator {
@@ -37,26 +41,34 @@ impl Accumulator {
     /// [`sweep`](super::sweep) leaves them.
     pub(crate) fn resize(&mut self, width: usize, strips: usize) {
         let blocks = width.div_ceil(BLOCK_WIDTH) + 1;
-        self.stride = blocks * BLOCK_WIDTH;
-        self.words = blocks.div_ceil(64);
-        self.columns.resize(self.stride * strips, [0; BLOCK_HEIGHT]);
-        self.marks.resize(self.stride * strips, Marks::default());
-        self.occupied.resize(self.words * strips, 0);
+        self.strips.resize_with(strips, Strip::default);
+        for strip in &mut self.strips {
+            strip.columns.resize(blocks * BLOCK_WIDTH, Column::default());
+            strip.occupied.resize(blocks.div_ceil(64), 0);
+            strip.marks.clear();
+        }
     }
 
     /// Whether some block of strip `index` is occupied.
     pub(crate) fn is_occupied(&self, index: usize) -> bool {
-        self.occupied
-            .get(index * self.words..(index + 1) * self.words)
-            .is_some_and(|words| words.iter().any(|word| *word != 0))
+        self.strips.get(index).is_some_and(|strip| strip.occupied.iter().any(|word| *word != 0))
+    }
+
+    /// Makes room for the marks of exact antialiasing.
+    pub(super) fn keep_marks(&mut self) {
+        for strip in &mut self.strips {
+            strip.marks.resize(strip.columns.len(), Marks::default());
+        }
     }
 
     /// Moves all values to where there is room for any number of them.
     pub(super) fn set_aside(&mut self) {
-        self.wide.resize(self.columns.len(), [0; BLOCK_HEIGHT]);
-        for (wide, column) in self.wide.iter_mut().zip(&mut self.columns) {
-            for (wide, value) in wide.iter_mut().zip(column) {
-                *wide += i64::from(std::mem::take(value));
+        for Strip { columns, wide, .. } in &mut self.strips {
+            wide.resize(columns.len(), [0; BLOCK_HEIGHT]);
+            for (wide, column) in wide.iter_mut().zip(columns) {
+                for (wide, value) in wide.iter_mut().zip(&mut column.0) {
+                    *wide += i64::from(std::mem::take(value));
+                }
             }
         }
     }
@@ -65,21 +77,17 @@ impl Accumulator {
     /// the same. What was set aside stays until [`forget`](Self::forget).
     pub(super) fn bring_back(&mut self, rule: FillRule) {
         let full = i64::from(FULL);
-        for (columns, wide) in self.columns.chunks_mut(self.stride.max(1)).zip(self.wide.chunks(self.stride.max(1))) {
+        for Strip { columns, wide, .. } in &mut self.strips {
             let (mut sum, mut before) = ([0_i64; BLOCK_HEIGHT], [0_i64; BLOCK_HEIGHT]);
             for (column, wide) in columns.iter_mut().zip(wide) {
-                for (row, value) in column.iter_mut().enumerate() {
-                    if let (Some(sum), Some(before), Some(wide)) =
-                        (sum.get_mut(row), before.get_mut(row), wide.get(row))
-                    {
-                        *sum += wide;
-                        let cut = match rule {
-                            FillRule::NonZero => (*sum).clamp(-full, full),
-                            FillRule::EvenOdd => sum.rem_euclid(2 * full),
-                        };
-                        *value = (cut - *before) as i32;
-                        *before = cut;
-                    }
+                for (((value, wide), sum), before) in column.0.iter_mut().zip(wide).zip(&mut sum).zip(&mut before) {
+                    *sum += *wide;
+                    let cut = match rule {
+                        FillRule::NonZero => (*sum).clamp(-full, full),
+                        FillRule::EvenOdd => sum.rem_euclid(2 * full),
+                    };
+                    *value = (cut - *before) as i32;
+                    *before = cut;
                 }
             }
         }
@@ -87,34 +95,20 @@ impl Accumulator {
 
     /// Drops what was set aside.
     pub(crate) fn forget(&mut self) {
-        self.wide.clear();
+        self.strips.iter_mut().for_each(|strip| strip.wide.clear());
     }
 
     /// The marks of a pixel's column.
     #[inline(always)]
     pub(super) fn marks(&mut self, pixel: BandPixel) -> Option<&mut Marks> {
-        self.marks.get_mut(pixel.strip * self.stride..(pixel.strip + 1) * self.stride)?.get_mut(pixel.column)
+        self.strips.get_mut(pixel.strip)?.marks.get_mut(pixel.column)
     }
 
     /// The accumulator of strip `index`, or `None` past the last.
     #[inline(always)]
-    pub(crate) fn strip(&mut self, index: usize) -> Option<StripCells<'_>> {
-        Some(StripCells {
-            columns: self.columns.get_mut(index * self.stride..(index + 1) * self.stride)?,
-            marks: self.marks.get_mut(index * self.stride..(index + 1) * self.stride)?,
-            occupied: self.occupied.get_mut(index * self.words..(index + 1) * self.words)?,
-            wide: self.wide.get(index * self.stride..(index + 1) * self.stride).unwrap_or(&[]),
-        })
+    pub(crate) fn strip(&mut self, index: usize) -> Option<&mut Strip> {
+        self.strips.get_mut(index)
     }
-}
-
-/// The accumulator of one strip.
-pub(crate) struct StripCells<'a> {
-    pub(crate) columns: &'a mut [Column],
-    pub(crate) marks: &'a mut [Marks],
-    pub(crate) occupied: &'a mut [u64],
-    /// What was set aside of a crowd of edges; else empty.
-    pub(super) wide: &'a [[i64; BLOCK_HEIGHT]],
 }
 
 /// Rows of a column, as bits.
@@ -144,7 +138,7 @@ pub(super) struct BandPixel {
     pub(super) row: usize,
 }
 
-impl StripCells<'_> {
+impl Strip {
     /// Marks the blocks that hold two columns as occupied: all between, if they are at most a block apart.
     #[inline(always)]
     pub(crate) fn occupy_pair(&mut self, first: usize, last: usize) {

@@ -16,7 +16,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
-use super::cell::{Accumulator, BandPixel, Column, FULL, Marks, StripCells};
+use super::cell::{Accumulator, BandPixel, Column, FULL, Marks, Strip};
 use super::edge::Edge;
 use super::kernel::{CROWD, RowParts, STRIP_SHIFT, add_edge, for_strip_parts};
 use super::sample::inside;
@@ -130,6 +130,7 @@ impl Part {
 /// twice: along each scanline only one of them is crossed, and the sum of their areas is right by any fill rule.
 #[inline(always)]
 pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edges: &[Edge], top: i32, strips: usize) {
+    cells.keep_marks();
     let mut before: Option<Edge> = None;
     for edge in edges {
         if edge.y0 == edge.y1 {
@@ -178,7 +179,7 @@ fn touch_horizontally(cells: &mut Accumulator, edge: &Edge, top: i32) {
     }
     let (left, right) = if edge.x0 < edge.x1 { (edge.x0, edge.x1) } else { (edge.x1, edge.x0) };
     let row = (y >> fixed::SHIFT) as usize;
-    let Some(mut strip) = cells.strip(row / BLOCK_HEIGHT) else { return };
+    let Some(strip) = cells.strip(row / BLOCK_HEIGHT) else { return };
     let (first, last) = ((left >> fixed::SHIFT) as usize, (right >> fixed::SHIFT) as usize);
     strip.occupy(first, last);
     for marks in strip.marks.get_mut(first..=last).unwrap_or(&mut []) {
@@ -203,7 +204,7 @@ fn pixel_within(edge: &Edge, top: i32) -> Option<BandPixel> {
 #[inline(always)]
 pub(crate) fn resolve<S: Simd>(
     simd: S,
-    cells: &mut StripCells<'_>,
+    cells: &mut Strip,
     edges: &[Edge],
     top: i32,
     rule: FillRule,
@@ -218,12 +219,13 @@ pub(crate) fn resolve<S: Simd>(
         for (index, row) in scratch.rows.iter_mut().enumerate() {
             if !row.pixels.is_empty() && !row.crowded {
                 row.sort();
-                resolve_row(simd, cells.columns, index, row, rule, &mut scratch.window);
+                resolve_row(simd, &mut cells.columns, index, row, rule, &mut scratch.window);
             }
         }
     }
-    for_occupied(cells.occupied, |block| {
-        for marks in block_of(cells.marks, block) {
+    let Strip { marks, occupied, .. } = cells;
+    for_occupied(occupied, |block| {
+        for marks in block_of(marks, block) {
             *marks = Marks::default();
         }
     });
@@ -248,8 +250,8 @@ fn for_occupied(occupied: &[u64], mut f: impl FnMut(usize)) {
 
 /// Marks the clusters, all rows at a time; false if there is none.
 #[inline(always)]
-fn find_clusters(cells: &mut StripCells<'_>) -> bool {
-    let StripCells { marks, occupied, .. } = cells;
+fn find_clusters(cells: &mut Strip) -> bool {
+    let Strip { marks, occupied, .. } = cells;
     let mut any = 0;
     for_occupied(occupied, |block| {
         for marks in block_of(marks, block) {
@@ -293,10 +295,10 @@ fn find_clusters(cells: &mut StripCells<'_>) -> bool {
 
 /// Lists for each row the clusters with the windings left of them, and the pixels with their sums.
 #[inline(always)]
-fn list_pixels<S: Simd>(simd: S, cells: &mut StripCells<'_>, rows: &mut [Row; BLOCK_HEIGHT]) {
+fn list_pixels<S: Simd>(simd: S, cells: &mut Strip, rows: &mut [Row; BLOCK_HEIGHT]) {
     let mut sum = i32x8::splat(simd, 0);
     let (mut left, mut before) = (0, usize::MAX);
-    let StripCells { columns, marks, occupied, wide } = cells;
+    let Strip { columns, marks, occupied, wide } = cells;
     let (mut wide_sum, mut wide_end) = ([0_i64; BLOCK_HEIGHT], 0);
     for_occupied(occupied, |block| {
         if block != before.wrapping_add(1) {
@@ -306,7 +308,7 @@ fn list_pixels<S: Simd>(simd: S, cells: &mut StripCells<'_>, rows: &mut [Row; BL
         let start = (block * BLOCK_WIDTH) as i32;
         for (column, (cell, marks)) in (start..).zip(block_of(columns, block).iter().zip(block_of(marks, block))) {
             let old = sum;
-            sum += i32x8::load_array_ref(simd, cell);
+            sum += i32x8::load_array_ref(simd, &cell.0);
             if marks.cluster == 0 {
                 left = 0;
                 continue;
@@ -352,7 +354,7 @@ fn for_rows(mut bits: u8, rows: &mut [Row; BLOCK_HEIGHT], mut f: impl FnMut(&mut
 
 /// Lists the parts of an edge that lie in clusters of the strip at `top`.
 #[inline(always)]
-fn gather<S: Simd>(simd: S, cells: &StripCells<'_>, edge: &Edge, top: i32, rows: &mut [Row; BLOCK_HEIGHT]) {
+fn gather<S: Simd>(simd: S, cells: &Strip, edge: &Edge, top: i32, rows: &mut [Row; BLOCK_HEIGHT]) {
     let (_, y0, _, y1, winding) = edge.downward();
     if y1 <= top || y0 >= top + (1 << STRIP_SHIFT) || y0 == y1 {
         return;
@@ -539,7 +541,7 @@ fn resolve_row<S: Simd>(simd: S, columns: &mut [Column], index: usize, row: &Row
         };
         let covered = covered.unwrap_or_else(|| crowded_coverage(window, *column, rule));
         if let Some([here, next]) = columns.get_mut(*column as usize..).and_then(|rest| rest.first_chunk_mut::<2>())
-            && let (Some(here), Some(next)) = (here.get_mut(index), next.get_mut(index))
+            && let (Some(here), Some(next)) = (here.0.get_mut(index), next.0.get_mut(index))
         {
             *here = here.wrapping_add(covered - sum);
             *next = next.wrapping_sub(covered - sum);

@@ -15,7 +15,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
 use super::bins::Edges;
-use super::cell::{Accumulator, Column, FULL, Marks, StripCells};
+use super::cell::{Accumulator, Column, FULL, Marks, Strip};
 use super::edge::{Edge, EdgeLine};
 use crate::num::fixed;
 use crate::num::lanes::{max_f32, max_i32, min_f32, min_i32, round_f32};
@@ -132,8 +132,8 @@ fn add_strip_part<S: Simd, const TOUCH: bool>(
             (start.0, end.0) = (*low, *low);
         }
     }
-    if let Some(mut strip) = cells.strip(index) {
-        add_piece::<S, TOUCH>(simd, &mut strip, start, end, winding, top + ((index as i32) << STRIP_SHIFT));
+    if let Some(strip) = cells.strip(index) {
+        add_piece::<S, TOUCH>(simd, strip, start, end, winding, top + ((index as i32) << STRIP_SHIFT));
     }
 }
 
@@ -142,7 +142,7 @@ fn add_strip_part<S: Simd, const TOUCH: bool>(
 #[inline(always)]
 fn add_piece<S: Simd, const TOUCH: bool>(
     simd: S,
-    cells: &mut StripCells<'_>,
+    cells: &mut Strip,
     (start_x, start_y): (i32, i32),
     (end_x, end_y): (i32, i32),
     winding: i32,
@@ -253,7 +253,7 @@ impl<S: Simd> RowParts<S> {
 
 #[inline(always)]
 fn add_to<S: Simd>(simd: S, column: &mut Column, value: i32x8<S>) {
-    (i32x8::load_array_ref(simd, column) + value).store_array(column);
+    (i32x8::load_array_ref(simd, &column.0) + value).store_array(&mut column.0);
 }
 
 /// Adds parts that lie in the first two columns.
@@ -294,7 +294,7 @@ fn add_columns<S: Simd>(simd: S, columns: &mut [Column], row: RowParts<S>) {
     add_to(simd, spill, total - area);
 }
 
-impl StripCells<'_> {
+impl Strip {
     /// Adds a piece of an edge that lies within one row: from x0 to x1 (either order), climbing `dy` (0 ..= 256,
     /// times the winding). The way very flat edges go; the kernel's formula, in plain `f64`.
     pub(crate) fn add_row_piece(&mut self, row: usize, x0: i32, x1: i32, dy: i32) {
@@ -314,7 +314,7 @@ impl StripCells<'_> {
         let Some((spill, columns)) = columns.split_last_mut() else { return };
         let Some((end, columns)) = columns.split_last_mut() else { return };
         let add = |column: &mut Column, value: i32| {
-            if let Some(cell) = column.get_mut(row) {
+            if let Some(cell) = column.0.get_mut(row) {
                 *cell = cell.wrapping_add(value);
             }
         };
@@ -340,7 +340,7 @@ fn round(v: f64) -> i32 {
 /// Adds a flat piece row by row.
 #[inline(never)]
 fn add_flat<const TOUCH: bool>(
-    cells: &mut StripCells<'_>,
+    cells: &mut Strip,
     start_x: i32,
     start_y: i32,
     end_x: i32,
@@ -420,7 +420,7 @@ mod tests {
         out
     }
 
-    fn accumulate(level: SimdLevel, edges: &[Edge], width: usize) -> Vec<Column> {
+    fn accumulate(level: SimdLevel, edges: &[Edge], width: usize) -> Vec<[i32; 8]> {
         let mut cells = Accumulator::default();
         cells.resize(width, 1);
         for edge in edges {
@@ -431,7 +431,7 @@ mod tests {
         let out = strip.columns[..width]
             .iter()
             .map(|column| {
-                for (s, c) in sum.iter_mut().zip(column) {
+                for (s, c) in sum.iter_mut().zip(&column.0) {
                     *s += c;
                 }
                 sum
@@ -439,7 +439,7 @@ mod tests {
             .collect();
         for (column, values) in strip.columns.iter().enumerate() {
             let bit = strip.occupied[column / 16 / 64] >> (column / 16 % 64) & 1;
-            assert!(bit == 1 || *values == [0; 8], "column {column} holds values but is not marked");
+            assert!(bit == 1 || values.0 == [0; 8], "column {column} holds values but is not marked");
         }
         out
     }

@@ -1,6 +1,6 @@
 //! Sampled coverage: n × n samples a pixel, and pixel centres alone.
 
-use super::cell::StripCells;
+use super::cell::Strip;
 use super::edge::Edge;
 use crate::style::FillRule;
 use crate::surface::block::BLOCK_HEIGHT;
@@ -18,7 +18,7 @@ pub(crate) struct SampleScratch {
 /// inside is to its right (or, on a vertex, below it): along each sample row an edge takes part for
 /// y0 ≤ y < y1, and its crossing belongs to the samples at and right of it.
 pub(crate) fn add_samples(
-    cells: &mut StripCells<'_>,
+    cells: &mut Strip,
     edges: &[Edge],
     top: i32,
     grid: u8,
@@ -84,7 +84,7 @@ pub(crate) fn inside(winding: i32, rule: FillRule) -> bool {
 }
 
 /// Adds the samples `start..end` of a sample row to pixel row `row`, n samples a pixel.
-pub(crate) fn add_span(cells: &mut StripCells<'_>, row: usize, start: i32, end: i32, n: i32) {
+pub(crate) fn add_span(cells: &mut Strip, row: usize, start: i32, end: i32, n: i32) {
     let columns = cells.columns.len() as i32;
     let (start, end) = (start.max(0), end.min((columns - 1) * n));
     if start >= end {
@@ -94,7 +94,7 @@ pub(crate) fn add_span(cells: &mut StripCells<'_>, row: usize, start: i32, end: 
     for (at, sign) in [(start, 1), (end, -1)] {
         let (column, within) = ((at / n) as usize, at % n);
         if let Some([here, next]) = cells.columns.get_mut(column..).and_then(|c| c.first_chunk_mut::<2>()) {
-            if let (Some(here), Some(next)) = (here.get_mut(row), next.get_mut(row)) {
+            if let (Some(here), Some(next)) = (here.0.get_mut(row), next.0.get_mut(row)) {
                 *here += sign * (n - within);
                 *next += sign * within;
             }

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, f64x2, i32x8, u8x16};
 
-use super::cell::{FULL, StripCells};
+use super::cell::{Column, FULL, Strip};
 use crate::geom::FixedRect;
 use crate::num::fixed;
 use crate::num::lanes::{min_i32, truncate_f32};
@@ -45,7 +45,7 @@ pub(crate) trait BlockSink<S: Simd> {
 #[inline(always)]
 pub(crate) fn sweep<S: Simd, K: BlockSink<S>>(
     simd: S,
-    cells: &mut StripCells<'_>,
+    cells: &mut Strip,
     blocks: usize,
     rule: CoverageRule,
     sink: &mut K,
@@ -84,7 +84,7 @@ pub(crate) fn sweep<S: Simd, K: BlockSink<S>>(
 #[inline(always)]
 fn sweep_with<S: Simd, K: BlockSink<S>>(
     simd: S,
-    cells: &mut StripCells<'_>,
+    cells: &mut Strip,
     blocks: usize,
     sink: &mut K,
     coverage: impl Fn(i32x8<S>) -> i32x8<S>,
@@ -107,14 +107,14 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
             };
             if index >= blocks {
                 // A block in which nothing is drawn, such as the one into which the last column spills.
-                *columns = [[0; BLOCK_HEIGHT]; BLOCK_WIDTH];
+                *columns = [Column::default(); BLOCK_WIDTH];
                 done = index + 1;
                 continue;
             }
             if !(sink.wants_edges() && sink.wants(index)) {
                 for column in columns.iter_mut() {
-                    cover += i32x8::load_array_ref(simd, column);
-                    *column = [0; BLOCK_HEIGHT];
+                    cover += i32x8::load_array_ref(simd, &column.0);
+                    *column = Column::default();
                 }
                 done = index + 1;
                 continue;
@@ -122,8 +122,8 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
             let mut quads = [i32x8::splat(simd, 0); 4];
             for (packed, columns) in quads.iter_mut().zip(columns.as_chunks_mut::<4>().0) {
                 for (shift, column) in columns.iter_mut().enumerate() {
-                    cover += i32x8::load_array_ref(simd, column);
-                    *column = [0; BLOCK_HEIGHT];
+                    cover += i32x8::load_array_ref(simd, &column.0);
+                    *column = Column::default();
                     *packed |= coverage(cover) << (8 * shift as u32);
                 }
             }
