@@ -28,7 +28,8 @@ pub(crate) trait BlockSink<S: Simd> {
         let _ = index;
         true
     }
-    /// Whether blocks in which coverage differs matter: if not, they may be left out.
+    /// Whether blocks in which coverage differs along a row matter: if not, what is reported of them is the least
+    /// coverage of each row, as a run of one block.
     #[inline(always)]
     fn wants_edges(&self) -> bool {
         true
@@ -111,11 +112,22 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
                 done = index + 1;
                 continue;
             }
-            if !(sink.wants_edges() && sink.wants(index)) {
+            if !sink.wants(index) {
                 for column in columns.iter_mut() {
                     cover += i32x8::load_array_ref(simd, &column.0);
                     *column = Column::default();
                 }
+                done = index + 1;
+                continue;
+            }
+            if !sink.wants_edges() {
+                let mut least = i32x8::splat(simd, 255);
+                for column in columns.iter_mut() {
+                    cover += i32x8::load_array_ref(simd, &column.0);
+                    *column = Column::default();
+                    least = min_i32(least, coverage(cover));
+                }
+                uniform(simd, least, index, index + 1, sink);
                 done = index + 1;
                 continue;
             }

@@ -125,7 +125,6 @@ pub(super) struct ClaimSink<'a> {
 }
 
 impl<S: Simd> BlockSink<S> for ClaimSink<'_> {
-    // A block with edges in it is hardly ever covered whole.
     #[inline(always)]
     fn wants_edges(&self) -> bool {
         false

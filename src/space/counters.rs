@@ -22,7 +22,7 @@ pub struct Counters {
     pub culled: u64,
     /// Triangles without a sample in their bounding box: dropped before set-up.
     pub no_samples: u64,
-    /// Triangles set up, once for each band that they reach.
+    /// Triangles set up.
     pub setups: u64,
     /// Tiles looked at.
     pub tiles: u64,

@@ -103,11 +103,13 @@ impl Walk<'_, '_, '_> {
             area = -area;
         }
         let extent = &binning.extent;
-        let bounds = setup::sample_box(v.map(|v| v.x), v.map(|v| v.y), extent).intersect(&self.area);
+        let whole = setup::sample_box(v.map(|v| v.x), v.map(|v| v.y), extent).intersect(&binning.area);
+        let bounds = whole.intersect(&self.area);
         if bounds.is_empty() || area == 0 {
             return;
         }
-        self.counters.setups += 1;
+        // Counted by the band that holds its top, so that the number does not depend on bands.
+        self.counters.setups += u64::from(bounds.top == whole.top);
         let edges = setup::edges(&v, binning.state.conservative);
         let front = draw.kind == Kind::Point || binning.is_front(clockwise);
         let triangle = Lazy { draw: *draw, indices, v, area, front };
