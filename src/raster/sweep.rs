@@ -28,12 +28,6 @@ pub(crate) trait BlockSink<S: Simd> {
         let _ = index;
         true
     }
-    /// Whether blocks in which coverage differs along a row matter: if not, what is reported of them is the least
-    /// coverage of each row, as a run of one block.
-    #[inline(always)]
-    fn wants_edges(&self) -> bool {
-        true
-    }
     /// Coverage of the block `index` (16 columns each) of the strip.
     fn block(&mut self, simd: S, index: usize, mask: &MaskBlock);
     /// Blocks `start..end` are covered by the same value along each row.
@@ -120,17 +114,6 @@ fn sweep_with<S: Simd, K: BlockSink<S>>(
                 done = index + 1;
                 continue;
             }
-            if !sink.wants_edges() {
-                let mut least = i32x8::splat(simd, 255);
-                for column in columns.iter_mut() {
-                    cover += i32x8::load_array_ref(simd, &column.0);
-                    *column = Column::default();
-                    least = min_i32(least, coverage(cover));
-                }
-                uniform(simd, least, index, index + 1, sink);
-                done = index + 1;
-                continue;
-            }
             let mut quads = [i32x8::splat(simd, 0); 4];
             for (packed, columns) in quads.iter_mut().zip(columns.as_chunks_mut::<4>().0) {
                 for (shift, column) in columns.iter_mut().enumerate() {
@@ -206,13 +189,13 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
     let whole = |index: usize| left <= (index as i32) << BLOCK_SHIFT && right >= (index as i32 + 1) << BLOCK_SHIFT;
     let start = if whole(first) { first } else { first + 1 };
     let end = if whole(last) { last + 1 } else { last };
-    if start > first && sink.wants_edges() && sink.wants(first) {
+    if start > first && sink.wants(first) {
         sink.block(simd, first, &edge_block(first));
     }
     if start < end {
         sink.run(simd, start, end, &rows);
     }
-    if end <= last && (last > first || start == first) && sink.wants_edges() && sink.wants(last) {
+    if end <= last && (last > first || start == first) && sink.wants(last) {
         sink.block(simd, last, &edge_block(last));
     }
 }

@@ -10,9 +10,10 @@ use fearless_simd::Simd;
 use super::clip_cache::{ClipCache, clip_for};
 use super::coverage::{Coverage, accumulate};
 use super::hidden::{find_hidden, find_visible};
+use super::kept::Kept;
 use super::layer::{LayerBuffer, mask_layer, open_surface};
 use super::occlusion::Occlusion;
-use super::painter::{Look, Source, paint_coverage};
+use super::painter::{Look, Source, paint_coverage, paint_kept};
 use super::plan::Plan;
 use super::prepare::Chunk;
 use super::surface::Surface;
@@ -41,6 +42,7 @@ pub(super) struct BandScratch {
     pub(super) spare_layers: Vec<LayerBuffer>,
     pub(super) clips: ClipCache,
     pub(super) occlusion: Occlusion,
+    pub(super) kept: Kept,
     /// Of the draw in hand, for each strip: the blocks in which it can be seen, and their columns.
     pub(super) visible: Vec<(usize, usize)>,
     pub(super) reaches: Vec<Reach>,
@@ -92,6 +94,7 @@ pub(super) fn render(
     scratch.cells.resize(width, strips);
     scratch.clips.reset();
     scratch.occlusion.reset(frame.blocks, strips);
+    scratch.kept.clear();
     dispatch!(level, simd => render_with(simd, &frame, &mut target, scratch));
     // A recording ends with every layer closed; were one open, its memory is kept all the same.
     scratch.spare_layers.append(&mut scratch.layers);
@@ -104,14 +107,19 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
     for (chunk_index, chunk) in frame.chunks.iter().enumerate() {
         let Some(band) = chunk.band(frame.index) else { continue };
         for item in &band.items {
-            scratch.occlusion.release(order);
+            let place = order;
+            scratch.occlusion.release(place);
             order += 1;
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };
             let edges = chunk.edges(band, *item);
             match command {
                 Command::Draw(draw) => {
                     let Some(paint) = frame.list.paints.get(draw.paint as usize) else { continue };
-                    paint_draw(simd, frame, target, scratch, draw, paint, edges);
+                    if scratch.kept.holds(place) {
+                        paint_kept(simd, frame, &mut scratch.kept, Look::new(draw, paint, None), target);
+                    } else {
+                        paint_draw(simd, frame, target, scratch, draw, paint, edges);
+                    }
                 }
                 Command::Clip(id) => scratch.clips.edges.push((id.0, chunk_index, *item)),
                 Command::BeginLayer(LayerStart { bounds, .. }) | Command::BeginMask(bounds) => {
@@ -179,12 +187,9 @@ fn paint_draw_inner<S: Simd>(
     paint: &PreparedPaint,
     edges: Edges<'_>,
 ) {
-    let source = match paint {
-        PreparedPaint::Nothing if draw.blend_mode == BlendMode::SourceOver => return,
-        PreparedPaint::Nothing => Source::Solid([0; 4]),
-        PreparedPaint::Solid(color) => Source::Solid(*color),
-        paint => Source::Paint(paint),
-    };
+    if matches!(paint, PreparedPaint::Nothing) && draw.blend_mode == BlendMode::SourceOver {
+        return;
+    }
     // The clip's own edges go through the same cells, so it comes first.
     clip_for(simd, frame, scratch, draw.clip);
     if !find_visible(frame, scratch, draw.bounds) {
@@ -194,12 +199,7 @@ fn paint_draw_inner<S: Simd>(
     let BandScratch { cells, layers, clips, occlusion, visible, .. } = scratch;
     let surface = &mut open_surface(frame, target, layers);
     let clip = clips.current(draw.clip);
-    // Opaque colours replace what is below either way; the usual mode has the shorter paths.
-    let blend_mode = match draw.blend_mode {
-        BlendMode::Source if paint.is_opaque() => BlendMode::SourceOver,
-        mode => mode,
-    };
-    let look = Look { source, blend_mode, opacity: 255, clip };
+    let look = Look::new(draw, paint, clip);
     paint_coverage(simd, frame, cells, coverage, look, surface, (occlusion, visible));
 }
 

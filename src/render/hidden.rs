@@ -1,16 +1,17 @@
-//! The search for what is painted over, before a band is painted.
+//! The search for what is painted over, before a band is painted. The coverage that it finds on the way is kept for the
+//! painting, so that it costs little where it finds nothing.
 
 use fearless_simd::Simd;
 
 use super::band::{BandScratch, Frame};
 use super::coverage::accumulate;
-use super::occlusion::{ClaimSink, reach};
+use super::kept::KeepSink;
+use super::occlusion::reach;
 use crate::blend::BlendMode;
 use crate::display_list::{ClipId, Command, Draw, Geometry};
 use crate::geom::IntRect;
 use crate::paint::PreparedPaint;
 use crate::raster::bins::Edges;
-use crate::style::Antialias;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 /// A shape with more edges in a band than so many for each block that its bounds could hold is not asked what it hides.
@@ -44,7 +45,7 @@ pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut Ban
     let mut work = 0;
     for &(chunk, item, order) in candidates.iter().rev() {
         // Where little is hidden, the search costs more than it gains.
-        if work > FAIR_TRIAL && scratch.occlusion.count() * WORK_PER_BLOCK < work {
+        if work > FAIR_TRIAL && scratch.occlusion.count() * WORK_PER_BLOCK < work || scratch.kept.is_full() {
             break;
         }
         let Some(chunk) = frame.chunks.get(chunk) else { continue };
@@ -63,7 +64,6 @@ pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut Ban
 fn may_hide(frame: &Frame<'_>, draw: &Draw, edges: usize, beneath: usize) -> bool {
     let opaque = matches!(draw.blend_mode, BlendMode::SourceOver | BlendMode::Source)
         && draw.clip == ClipId::NONE
-        && draw.antialias == Antialias::Analytic
         && matches!(draw.geometry, Geometry::Fill { .. } | Geometry::Rect(_) | Geometry::Bounds)
         && frame.list.paints.get(draw.paint as usize).is_some_and(PreparedPaint::is_opaque);
     let (top, bottom) = (draw.bounds.top.max(frame.top), draw.bounds.bottom.min(frame.top + frame.rows as i32));
@@ -73,7 +73,7 @@ fn may_hide(frame: &Frame<'_>, draw: &Draw, edges: usize, beneath: usize) -> boo
     opaque && edges <= EDGES_PER_BLOCK.min(beneath) * blocks && blocks * beneath > 0
 }
 
-/// Accumulates a shape where it can be seen and claims the blocks that it covers whole.
+/// Keeps a shape's coverage where it can be seen and claims the blocks that it covers whole.
 #[inline(never)]
 fn claim_blocks<S: Simd>(
     simd: S,
@@ -83,6 +83,7 @@ fn claim_blocks<S: Simd>(
     edges: Edges<'_>,
     order: u32,
 ) {
+    scratch.kept.begin(order);
     if !find_visible(frame, scratch, draw.bounds) {
         return;
     }
@@ -90,12 +91,12 @@ fn claim_blocks<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let BandScratch { cells, occlusion, visible, .. } = scratch;
+            let BandScratch { cells, occlusion, visible, kept, .. } = scratch;
             for strip in 0..frame.strips {
                 if !coverage.is_empty(frame, cells, strip) {
                     let rows = frame.rows.saturating_sub(strip * BLOCK_HEIGHT).min(BLOCK_HEIGHT);
                     let end = visible.get(strip).map_or(frame.blocks, |(_, end)| *end);
-                    let mut sink = ClaimSink { occlusion, order, strip, rows };
+                    let mut sink = KeepSink { kept, occlusion, order, strip, rows };
                     coverage.sweep(simd, frame, cells, strip, end, &mut sink);
                 }
             }

@@ -9,6 +9,7 @@ mod clip;
 mod clip_cache;
 mod coverage;
 mod hidden;
+mod kept;
 mod layer;
 mod occlusion;
 mod painter;

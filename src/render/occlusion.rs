@@ -4,12 +4,9 @@
 //! blocks, the last shape first; what lies beneath a claimed block is neither swept nor painted. When the painting
 //! comes to the shape itself, it gives its claims back and paints them. No pixel differs: each is overwritten whole.
 
-use fearless_simd::Simd;
-
 use crate::geom::IntRect;
 use crate::raster::kernel::Reach;
-use crate::raster::sweep::BlockSink;
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
+use crate::surface::block::BLOCK_WIDTH;
 
 /// The hidden blocks of one band.
 #[derive(Debug, Default)]
@@ -81,6 +78,19 @@ impl Occlusion {
         (seen_first, seen_end)
     }
 
+    /// The first of the blocks `start..end` that can be seen, with those right after it: from where to where.
+    #[inline(always)]
+    pub(super) fn visible_run(&self, strip: usize, mut start: usize, end: usize) -> Option<(usize, usize)> {
+        while start < end && self.is_hidden(strip, start) {
+            start += 1;
+        }
+        let from = start;
+        while start < end && !self.is_hidden(strip, start) {
+            start += 1;
+        }
+        (from < start).then_some((from, start))
+    }
+
     /// The shape at place `order` is about to be painted.
     #[inline(always)]
     pub(super) fn release(&mut self, order: u32) {
@@ -92,7 +102,7 @@ impl Occlusion {
     }
 
     /// Claims those of the blocks `start..end` that no shape further in front has.
-    fn claim(&mut self, order: u32, strip: usize, start: usize, end: usize) {
+    pub(super) fn claim(&mut self, order: u32, strip: usize, start: usize, end: usize) {
         for index in start / 64..end.div_ceil(64) {
             let first = index * 64;
             let low = u64::MAX << start.saturating_sub(first).min(63);
@@ -113,32 +123,6 @@ impl Occlusion {
 /// The part of a strip in which something of a shape can be seen.
 pub(super) fn reach((first, end): (usize, usize)) -> Reach {
     if first < end { Reach::columns(first * BLOCK_WIDTH, end * BLOCK_WIDTH) } else { Reach::NOTHING }
-}
-
-/// Claims the blocks that a shape covers whole.
-pub(super) struct ClaimSink<'a> {
-    pub(super) occlusion: &'a mut Occlusion,
-    pub(super) order: u32,
-    pub(super) strip: usize,
-    /// Rows of the strip that exist.
-    pub(super) rows: usize,
-}
-
-impl<S: Simd> BlockSink<S> for ClaimSink<'_> {
-    #[inline(always)]
-    fn wants_edges(&self) -> bool {
-        false
-    }
-
-    #[inline(always)]
-    fn block(&mut self, _simd: S, _index: usize, _mask: &MaskBlock) {}
-
-    #[inline(always)]
-    fn run(&mut self, _simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
-        if rows.iter().take(self.rows).all(|row| *row == 255) {
-            self.occlusion.claim(self.order, self.strip, start, end);
-        }
-    }
 }
 
 #[cfg(test)]

@@ -5,12 +5,14 @@ use fearless_simd::Simd;
 use super::band::Frame;
 use super::clip::{BandMask, ClipBlock};
 use super::coverage::Coverage;
+use super::kept::{Kept, KeptCoverage};
 use super::occlusion::Occlusion;
 use super::surface::Surface;
 use crate::blend::{
     BlendMode, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row, over_solid_full,
     over_solid_row, scale_mask_row, scale_mask_row_by,
 };
+use crate::display_list::Draw;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
 use crate::raster::sweep::BlockSink;
@@ -66,12 +68,7 @@ fn paint_coverage_inner<S: Simd>(
     surface: &mut Surface<'_>,
     (occlusion, visible): (&Occlusion, &[(usize, usize)]),
 ) {
-    let mut pattern = [0; ROW_BYTES];
-    if let Source::Solid(color) = look.source {
-        for pixel in pattern.as_chunks_mut::<4>().0 {
-            *pixel = color;
-        }
-    }
+    let pattern = look.pattern();
     for strip in 0..frame.strips {
         if coverage.is_empty(frame, cells, strip) {
             continue;
@@ -82,6 +79,73 @@ fn paint_coverage_inner<S: Simd>(
         let occlusion = visible.get(strip).map(|_| occlusion);
         let mut painter = Painter { look: &mut look, pattern, occlusion, surface, strip, rows, top };
         coverage.sweep(simd, frame, cells, strip, end, &mut painter);
+    }
+}
+
+/// Draws the coverage that was kept last.
+#[inline(never)]
+pub(super) fn paint_kept<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    kept: &mut Kept,
+    look: Look<'_>,
+    surface: &mut Surface<'_>,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || paint_kept_inner(simd, frame, kept, look, surface),
+    )
+}
+
+#[inline(always)]
+fn paint_kept_inner<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    kept: &mut Kept,
+    mut look: Look<'_>,
+    surface: &mut Surface<'_>,
+) {
+    let pattern = look.pattern();
+    let mut painter = Painter { look: &mut look, pattern, occlusion: None, surface, strip: 0, rows: 0, top: 0 };
+    kept.take(
+        #[inline(always)]
+        |place, coverage| {
+            painter.strip = place.strip;
+            painter.rows = painter.surface.strip_rows(place.strip);
+            painter.top = frame.strip_top(place.strip);
+            match coverage {
+                KeptCoverage::Mask(mask) => painter.block(simd, place.start, mask),
+                KeptCoverage::Rows(rows) => painter.visible_run(simd, place.start, place.end, &rows),
+            }
+        },
+    );
+}
+
+impl<'a> Look<'a> {
+    /// How a draw's covered pixels look.
+    pub(super) fn new(draw: &Draw, paint: &'a PreparedPaint, clip: Option<&'a BandMask>) -> Self {
+        let source = match paint {
+            PreparedPaint::Nothing => Source::Solid([0; 4]),
+            PreparedPaint::Solid(color) => Source::Solid(*color),
+            paint => Source::Paint(paint),
+        };
+        // Opaque colours replace what is below either way; the usual mode has the shorter paths.
+        let blend_mode = match draw.blend_mode {
+            BlendMode::Source if paint.is_opaque() => BlendMode::SourceOver,
+            mode => mode,
+        };
+        Self { source, blend_mode, opacity: 255, clip }
+    }
+
+    /// A block's row of the one colour, if there is one.
+    fn pattern(&self) -> [u8; ROW_BYTES] {
+        let mut pattern = [0; ROW_BYTES];
+        if let Source::Solid(color) = self.source {
+            for pixel in pattern.as_chunks_mut::<4>().0 {
+                *pixel = color;
+            }
+        }
+        pattern
     }
 }
 
@@ -120,21 +184,10 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
 
     #[inline(always)]
     fn run(&mut self, simd: S, mut start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
-        if self.occlusion.is_some() {
-            // Between hidden blocks.
-            while start < end {
-                if !BlockSink::<S>::wants(self, start) {
-                    start += 1;
-                    continue;
-                }
-                let from = start;
-                while start < end && BlockSink::<S>::wants(self, start) {
-                    start += 1;
-                }
-                self.visible_run(simd, from, start, rows);
-            }
-        } else {
-            self.visible_run(simd, start, end, rows);
+        let Some(occlusion) = self.occlusion else { return self.visible_run(simd, start, end, rows) };
+        while let Some((from, to)) = occlusion.visible_run(self.strip, start, end) {
+            self.visible_run(simd, from, to, rows);
+            start = to;
         }
     }
 }
