@@ -15,10 +15,10 @@ use crate::raster::bins::Edges;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 /// A shape with more edges in a band than so many for each block that its bounds could hold is not asked what it hides.
-const EDGES_PER_BLOCK: usize = 4;
+const EDGES_PER_BLOCK: usize = 24;
 /// So many edges are accumulated in search of hidden blocks in any case, more only if each block costs no more.
 const FAIR_TRIAL: usize = 256;
-const WORK_PER_BLOCK: usize = 12;
+const WORK_PER_BLOCK: usize = 100;
 
 /// Lets the band's opaque shapes claim the blocks that they cover whole, front to back.
 #[inline(never)]
