@@ -131,7 +131,7 @@ impl Marks {
 }
 
 /// A pixel of a band.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) struct BandPixel {
     pub(super) strip: usize,
     pub(super) column: usize,

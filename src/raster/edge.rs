@@ -31,10 +31,16 @@ impl Edge {
 }
 
 impl Edge {
-    /// Whether `next` starts where this edge ends and goes on up or down as it does.
+    /// Whether `next` starts where this edge ends.
+    #[inline(always)]
+    pub(crate) fn meets(self, next: Self) -> bool {
+        (self.x1, self.y1) == (next.x0, next.y0)
+    }
+
+    /// Whether `next` goes up or down as this edge does.
     #[inline(always)]
     pub(crate) fn goes_on_with(self, next: Self) -> bool {
-        (self.x1, self.y1) == (next.x0, next.y0) && (self.y0 < self.y1) == (next.y0 < next.y1)
+        (self.y0 < self.y1) == (next.y0 < next.y1)
     }
 }
 

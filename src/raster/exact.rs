@@ -2,7 +2,7 @@
 //!
 //! Summed areas are exact for a pixel that one edge passes through. Where two do, the sum knows how much
 //! each covers, not how much both do: the fill rule then has to be applied to the windings before
-//! the areas are added. (Two that follow each other up or down count as one: no scanline crosses both.)
+//! the areas are added. (Two that follow each other count as one where they meet.)
 //!
 //! While edges are added, each notes the pixels that it touches. A pixel that was touched twice is looked at again:
 //!
@@ -126,19 +126,28 @@ impl Part {
 /// Adds the edges of a shape and notes which pixels they touch once and more often. Horizontal edges add nothing,
 /// but touch pixels as well: windings change at them.
 ///
-/// Where an edge goes on, up or down, from the end of the one before it, the pixel in which they meet is not touched
-/// twice: along each scanline only one of them is crossed, and the sum of their areas is right by any fill rule.
+/// The pixel in which an edge starts where the one before it ended is not touched twice by that: along each scanline
+/// either one of them is crossed, or both, one way and the other, and the sum of their areas is right by any fill rule. But
+/// of three edges in one pixel the first and the third may cross, unless all go up or all down.
 #[inline(always)]
 pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edges: &[Edge], top: i32, strips: usize) {
     cells.keep_marks();
     let mut before: Option<Edge> = None;
+    let mut last_joint: Option<(BandPixel, bool)> = None;
     for edge in edges {
         if edge.y0 == edge.y1 {
             touch_horizontally(cells, edge, top);
             before = None;
             continue;
         }
-        let joint = before.filter(|before| before.goes_on_with(*edge)).and_then(|_| pixel_within(edge, top));
+        let joint = before.filter(|before| before.meets(*edge)).and_then(|before| {
+            let pixel = pixel_within(edge, top)?;
+            let turns = !before.goes_on_with(*edge);
+            let same = last_joint.filter(|(last, _)| *last == pixel);
+            let single = same.is_none_or(|(_, turned)| !turned && !turns);
+            last_joint = Some((pixel, turns || same.is_some_and(|(_, turned)| turned)));
+            single.then_some(pixel)
+        });
         let marks = joint.and_then(|joint| cells.marks(joint).map(|marks| (joint, *marks)));
         add_edge::<S, true>(simd, cells, *edge, top, strips, &[]);
         if let Some((joint, old)) = marks

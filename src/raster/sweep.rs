@@ -178,11 +178,22 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
     let (first, last) = ((left >> BLOCK_SHIFT) as usize, ((right - 1) >> BLOCK_SHIFT) as usize);
     let edge_block = |index: usize| -> MaskBlock {
         let widths: [u32; BLOCK_WIDTH] = parts((index as i32) << BLOCK_SHIFT, left, right);
-        let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
-        for (row, height) in mask.iter_mut().zip(heights) {
+        let row_of = |height: u32| -> [u8; BLOCK_WIDTH] {
+            let mut row = [0; BLOCK_WIDTH];
             for (value, width) in row.iter_mut().zip(widths) {
                 *value = ((height * width * 255 + (1 << 15)) >> 16) as u8;
             }
+            row
+        };
+        // Most rows are covered over their whole height.
+        let whole = row_of(fixed::ONE as u32);
+        let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
+        for (row, height) in mask.iter_mut().zip(heights) {
+            *row = match height {
+                0 => continue,
+                256 => whole,
+                part => row_of(part),
+            };
         }
         mask
     };
@@ -235,4 +246,69 @@ fn even_odd<S: Simd>(simd: S, v: i32x8<S>) -> i32x8<S> {
 fn samples<S: Simd>(simd: S, v: i32x8<S>, scale: f32) -> i32x8<S> {
     let _ = simd;
     truncate_f32(v.to_float::<f32x8<S>>() * scale + 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+    use crate::raster::cell::Accumulator;
+    use crate::raster::edge::Edge;
+    use crate::raster::kernel::add_edge;
+
+    const BLOCKS: usize = 5;
+
+    #[derive(Default)]
+    struct Picture(Vec<[u8; BLOCKS * BLOCK_WIDTH]>);
+
+    impl<S: Simd> BlockSink<S> for Picture {
+        fn block(&mut self, _simd: S, index: usize, mask: &MaskBlock) {
+            for (row, values) in self.0.iter_mut().zip(mask) {
+                row[index * BLOCK_WIDTH..(index + 1) * BLOCK_WIDTH].copy_from_slice(values);
+            }
+        }
+
+        fn run(&mut self, _simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
+            for (row, value) in self.0.iter_mut().zip(rows) {
+                row[start * BLOCK_WIDTH..end * BLOCK_WIDTH].fill(*value);
+            }
+        }
+    }
+
+    #[test]
+    fn rectangles_are_covered_as_the_sweep_of_their_edges_says() {
+        let mut seed = 5_u32;
+        let mut random = |n: i32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as i32 % n
+        };
+        for case in 0..600 {
+            // Some whole pixels and blocks among them, and some that end above or below the strip.
+            let snap = [1, 256, 4096][case % 3];
+            let side = |v: i32| v / snap * snap;
+            let (x, y) = (side(random(70 * 256)), random(12 * 256) - 512);
+            let rect = FixedRect {
+                left: x,
+                top: y,
+                right: (x + side(1 + random(60 * 256))).min((BLOCKS * BLOCK_WIDTH) as i32 * 256),
+                bottom: y + 1 + random(9 * 256),
+            };
+            for level in SimdLevel::available() {
+                let empty = || Picture(vec![[0; BLOCKS * BLOCK_WIDTH]; BLOCK_HEIGHT]);
+                let (mut swept, mut direct) = (empty(), empty());
+                dispatch!(level, simd => {
+                    let mut cells = Accumulator::default();
+                    cells.resize(BLOCKS * BLOCK_WIDTH, 1);
+                    let FixedRect { left, top, right, bottom } = rect;
+                    for (x, y0, y1) in [(left, top, bottom), (right, bottom, top)] {
+                        let edge = Edge { x0: x, y0, x1: x, y1 };
+                        add_edge::<_, false>(simd, &mut cells, edge, 0, 1, &[]);
+                    }
+                    sweep(simd, cells.strip(0).unwrap(), BLOCKS, CoverageRule::NonZero, &mut swept);
+                    sweep_rect(simd, rect, 0, BLOCKS, &mut direct);
+                });
+                assert_eq!(swept.0, direct.0, "{rect:?} at {level:?}");
+            }
+        }
+    }
 }
