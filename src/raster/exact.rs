@@ -133,6 +133,7 @@ impl Part {
 pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edges: &[Edge], top: i32, strips: usize) {
     cells.keep_marks();
     let mut before: Option<Edge> = None;
+    let mut first: Option<Edge> = None;
     let mut last_joint: Option<(BandPixel, bool)> = None;
     for edge in edges {
         if edge.y0 == edge.y1 {
@@ -141,21 +142,30 @@ pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edge
             continue;
         }
         let joint = before.filter(|before| before.meets(*edge)).and_then(|before| {
-            let pixel = pixel_within(edge, top)?;
+            let pixel = pixel_within(edge.x0, edge.y0 - top)?;
             let turns = !before.goes_on_with(*edge);
             let same = last_joint.filter(|(last, _)| *last == pixel);
             let single = same.is_none_or(|(_, turned)| !turned && !turns);
             last_joint = Some((pixel, turns || same.is_some_and(|(_, turned)| turned)));
             single.then_some(pixel)
         });
-        let marks = joint.and_then(|joint| cells.marks(joint).map(|marks| (joint, *marks)));
+        if before.is_none_or(|before| !before.meets(*edge)) {
+            first = Some(*edge);
+        }
+        // Where an outline closes, unless its first or last edge begins and ends in one pixel.
+        let closing = first.filter(|first| edge.meets(*first)).and_then(|first| {
+            let pixel = pixel_within(edge.x1, edge.y1 - top)?;
+            let others = [(first.x1, first.y1), (edge.x0, edge.y0)];
+            others.iter().all(|(x, y)| pixel_within(*x, y - top) != Some(pixel)).then_some(pixel)
+        });
+        let old = [joint, closing].map(|pixel| pixel.and_then(|pixel| Some((pixel, *cells.marks(pixel)?))));
         add_edge::<S, true>(simd, cells, *edge, top, strips, &[]);
-        if let Some((joint, old)) = marks
-            && let Some(marks) = cells.marks(joint)
-        {
-            let row = 1 << joint.row;
-            marks.once = marks.once & !row | old.once & row;
-            marks.twice = marks.twice & !row | old.twice & row;
+        for (pixel, old) in old.into_iter().flatten() {
+            if let Some(marks) = cells.marks(pixel) {
+                let row = 1 << pixel.row;
+                marks.once = marks.once & !row | old.once & row;
+                marks.twice = marks.twice & !row | old.twice & row;
+            }
         }
         before = Some(*edge);
     }
@@ -196,10 +206,10 @@ fn touch_horizontally(cells: &mut Accumulator, edge: &Edge, top: i32) {
     }
 }
 
-/// The pixel in which an edge starts, if that is inside of it and not on a side, where its neighbour might be meant.
+/// The pixel of a point (y from the band's top), if the point is inside of it and not on a side, where its neighbour might
+/// be meant.
 #[inline(always)]
-fn pixel_within(edge: &Edge, top: i32) -> Option<BandPixel> {
-    let (x, y) = (edge.x0, edge.y0 - top);
+fn pixel_within(x: i32, y: i32) -> Option<BandPixel> {
     let inside = |v: i32| v >= 0 && v & (fixed::ONE - 1) != 0;
     if !inside(x) || !inside(y) {
         return None;
@@ -654,4 +664,39 @@ fn crowded_coverage(window: &mut Window, column: i32, rule: FillRule) -> i32 {
         }
     }
     (area * (FULL as f32 / (256 * SCANLINES) as f32) + 0.5) as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+
+    /// The pixels of a band of 64 × 32 that are touched twice: (column, row).
+    fn touched_twice(points: &[(i32, i32)]) -> Vec<(usize, usize)> {
+        let mut cells = Accumulator::default();
+        cells.resize(64, 4);
+        let next = points.iter().cycle().skip(1);
+        let edges: Vec<Edge> = points.iter().zip(next).map(|(a, b)| Edge { x0: a.0, y0: a.1, x1: b.0, y1: b.1 }).collect();
+        dispatch!(SimdLevel::best(), simd => add_touching_edges(simd, &mut cells, &edges, 0, 4));
+        let mut found = Vec::new();
+        for strip in 0..4 {
+            for (column, marks) in cells.strip(strip).unwrap().marks.iter().enumerate() {
+                found.extend((0..8).filter(|row| marks.twice >> row & 1 == 1).map(|row| (column, strip * 8 + row)));
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn a_smooth_outline_touches_hardly_any_pixel_twice() {
+        let points: Vec<(i32, i32)> = (0..40)
+            .map(|i| {
+                let angle = f64::from(i) / 40.0 * std::f64::consts::TAU;
+                let [x, y] = [libm::cos(angle), libm::sin(angle)].map(|v| ((v * 6.0 + 16.03) * 256.0) as i32);
+                (x, y)
+            })
+            .collect();
+        let found = touched_twice(&points);
+        assert!(found.len() < 5, "{found:?}");
+    }
 }
