@@ -116,7 +116,7 @@ impl SurfaceShader<'_> {
             let visible = texel[3].simd_gt(zero);
             let inverse = visible.select(f32x8::splat(f.simd(), 1.0) / texel[3], zero);
             for i in 0..3 {
-                base[i] *= (texel[i] * inverse);
+                base[i] *= texel[i] * inverse;
             }
             base[3] *= texel[3];
         }
