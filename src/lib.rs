@@ -117,6 +117,8 @@ mod display_list;
 mod error;
 pub mod filter;
 mod geom;
+#[cfg(feature = "mesh")]
+pub mod load;
 mod num;
 mod paint;
 mod path;

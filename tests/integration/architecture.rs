@@ -11,7 +11,7 @@ const FLOORS: [&[&str]; 10] = [
     &["path", "surface"],
     &["raster", "space", "paint", "blend", "codec"],
     &["filter", "scene"],
-    &["display_list"],
+    &["display_list", "load"],
     &["render"],
     &["canvas"],
     &["svg"],

@@ -7,7 +7,7 @@ use std::str::FromStr as _;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use rastrum::{Antialias, Color};
 
-/// Draws SVG files as PNG, with the same bytes on every machine.
+/// Draws SVG files and 3D models as PNG, with the same bytes on every machine.
 #[derive(Debug, Parser)]
 #[command(
     name = "rastrum",
@@ -24,6 +24,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Render(Box<RenderArguments>),
+    Mesh(Box<crate::mesh::MeshArguments>),
     #[command(hide = true)]
     Worker(Box<RenderArguments>),
     Info(InfoArguments),

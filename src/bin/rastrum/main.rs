@@ -1,4 +1,4 @@
-//! The program: SVG files to PNG on the command line. It sees nothing but the library's public surface.
+//! The program: SVG files and 3D models to PNG on the command line. It sees nothing but the library's public surface.
 
 mod args;
 mod completions;
@@ -7,6 +7,7 @@ mod fonts;
 mod info;
 mod json;
 mod man;
+mod mesh;
 mod notes;
 mod plan;
 mod query;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
 fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
+        Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Worker(arguments) => worker::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),

@@ -1,0 +1,88 @@
+//! Wavefront OBJ and MTL, through `tobj`.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::path::Path;
+
+use super::{Model, gltf::picture, referenced};
+use crate::error::{Error, Result};
+use crate::scene::{AlphaMode, Material, Mesh, MeshVertex, Scene};
+use crate::space::{Address, Filter, Sampler, Topology};
+
+pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
+    let warnings = RefCell::new(Vec::new());
+    let options = tobj::LoadOptions { single_index: true, triangulate: true, ..tobj::LoadOptions::default() };
+    let materials = |path: &Path| match referenced(folder, &path.to_string_lossy()) {
+        Ok(bytes) => tobj::load_mtl_buf(&mut Cursor::new(bytes)),
+        Err(text) => {
+            warnings.borrow_mut().push(format!("materials are left out: {text}"));
+            Ok((Vec::new(), HashMap::new()))
+        }
+    };
+    let (models, loaded) = tobj::load_obj_buf(&mut Cursor::new(bytes), &options, materials)
+        .map_err(|error| Error::Format(format!("not sound OBJ: {error}")))?;
+    let mut warnings = warnings.into_inner();
+    let loaded = loaded.unwrap_or_else(|error| {
+        warnings.push(format!("materials are left out: {error}"));
+        Vec::new()
+    });
+    let mut scene = Scene::new();
+    for material in &loaded {
+        scene.add_material(material_of(material, folder, &mut warnings));
+    }
+    let fallback = scene.add_material(Material::default());
+    for model in models {
+        let own = model.mesh;
+        let triple = |values: &[f32], i: usize| values.get(3 * i..)?.first_chunk::<3>().copied();
+        let count = own.positions.len() / 3;
+        let vertices = (0..count)
+            .map(|i| {
+                let plain = MeshVertex::default();
+                let uv = own.texcoords.get(2 * i..).and_then(|uv| uv.first_chunk::<2>());
+                let [r, g, b] = triple(&own.vertex_color, i).unwrap_or([1.0; 3]);
+                MeshVertex {
+                    position: triple(&own.positions, i).unwrap_or_default(),
+                    normal: triple(&own.normals, i).unwrap_or(plain.normal),
+                    // v points up in OBJ.
+                    uv: uv.map_or(plain.uv, |[u, v]| [*u, 1.0 - *v]),
+                    color: [r, g, b, 1.0],
+                }
+            })
+            .collect();
+        let material = own.material_id.filter(|id| *id < loaded.len()).unwrap_or(fallback);
+        // With triangulation, faces of one or two vertices stay as such: they have no area.
+        let indices = own.indices;
+        let mut mesh = Mesh { vertices, indices, topology: Topology::Triangles, material };
+        if own.normals.is_empty() {
+            mesh.smooth_normals();
+        }
+        scene.add_mesh(&model.name, mesh, glam::Mat4::IDENTITY);
+    }
+    Ok(Model { scene, warnings })
+}
+
+fn material_of(material: &tobj::Material, folder: Option<&Path>, warnings: &mut Vec<String>) -> Material {
+    let [r, g, b] = material.diffuse.unwrap_or([0.8; 3]);
+    let opacity = material.dissolve.unwrap_or(1.0);
+    let sampler = Sampler::new(Address::Wrap, Filter::Trilinear);
+    let texture = material.diffuse_texture.as_ref().and_then(|name| {
+        // Options may stand before the name.
+        let file = name.split_whitespace().last().unwrap_or(name).replace('\\', "/");
+        match referenced(folder, &file).and_then(|bytes| picture(&bytes, sampler)) {
+            Ok(texture) => Some(texture),
+            Err(text) => {
+                warnings.push(format!("texture is left out: {text}"));
+                None
+            }
+        }
+    });
+    Material {
+        color: [r, g, b, opacity],
+        texture,
+        specular: material.specular.map_or(0.5, |[r, g, b]| (r + g + b) / 3.0),
+        shininess: material.shininess.map_or(32, |exponent| exponent.clamp(1.0, 1024.0) as u32),
+        alpha: if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque },
+        ..Material::default()
+    }
+}
