@@ -676,7 +676,8 @@ mod tests {
         let mut cells = Accumulator::default();
         cells.resize(64, 4);
         let next = points.iter().cycle().skip(1);
-        let edges: Vec<Edge> = points.iter().zip(next).map(|(a, b)| Edge { x0: a.0, y0: a.1, x1: b.0, y1: b.1 }).collect();
+        let edges: Vec<Edge> =
+            points.iter().zip(next).map(|(a, b)| Edge { x0: a.0, y0: a.1, x1: b.0, y1: b.1 }).collect();
         dispatch!(SimdLevel::best(), simd => add_touching_edges(simd, &mut cells, &edges, 0, 4));
         let mut found = Vec::new();
         for strip in 0..4 {

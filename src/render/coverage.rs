@@ -62,7 +62,6 @@ impl Coverage {
 /// Brings a shape, of which only what lies in `bounds` (device pixels) is drawn, into the cells, and says how to read
 /// them.
 #[inline(never)]
-#[expect(clippy::too_many_arguments, reason = "a draw's facts")]
 pub(super) fn accumulate<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
@@ -79,7 +78,6 @@ pub(super) fn accumulate<S: Simd>(
 }
 
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "a draw's facts")]
 fn accumulate_inner<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
