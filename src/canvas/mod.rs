@@ -5,6 +5,7 @@ mod clip;
 mod drawing;
 mod image;
 mod pixels;
+mod scene;
 mod state;
 
 pub use state::{SaveGuard, Shadow};

@@ -17,6 +17,7 @@ mod fixtures;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod golden;
 mod reference;
+mod scene_on_canvas;
 mod seeds_fragments;
 mod seeds_interpolation;
 mod seeds_lines;
