@@ -40,7 +40,7 @@ fn a_scene_obeys_clips_layers_and_opacity() {
     let (scene, camera) = scene();
     let mut canvas = Canvas::new(60, 60).unwrap();
     canvas.clear(Color::BLACK);
-    canvas.clip_rect(Rect::from_xywh(0.0, 0.0, 30.0, 60.0));
+    canvas.clip_rect(Rect::from_xywh(0.0, 0.0, 30.0, 60.0), rastrum::Antialias::default());
     canvas.push_layer(0.5, BlendMode::SourceOver);
     canvas.draw_scene(&scene, &camera, Rect::from_xywh(0.0, 0.0, 60.0, 60.0)).unwrap();
     canvas.pop_layer();
