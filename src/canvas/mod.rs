@@ -6,6 +6,7 @@ mod drawing;
 mod filter;
 mod image;
 mod pixels;
+mod scene;
 mod state;
 
 pub use filter::LayerOptions;

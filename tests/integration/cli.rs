@@ -470,3 +470,58 @@ fn wrong_arguments_exit_with_2() {
     }
     assert!(!Path::new(&folder.0).join("a.png").exists());
 }
+
+/// A square in the plane z = 0, its left triangle first.
+const SQUARE: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvn 0 0 1\nf 1//1 3//1 4//1\nf 1//1 2//1 3//1\n";
+
+#[test]
+fn mesh_draws_the_modes_that_are_exact_by_definition() {
+    let folder = Folder::new();
+    folder.write("square.obj", SQUARE);
+    let draw = |options: &[&str]| {
+        let eye = ["mesh", "square.obj", "-o", "out.png", "--size", "41x41", "--eye", "0,0,4", "--at", "0,0,0"];
+        let output = folder.run(&[&eye[..], options].concat());
+        assert_success(&output);
+        folder.read("out.png")
+    };
+    let ids = draw(&["--shading", "ids"]);
+    assert_eq!((ids.pixel(14, 18), ids.pixel(26, 22)), (Some([1, 0, 0, 255]), Some([2, 0, 0, 255])));
+    assert_eq!(ids.pixel(0, 0), Some([0; 4]));
+    assert_eq!(draw(&["--shading", "normals"]).pixel(20, 20), Some([128, 128, 255, 255]));
+    // Straight on, N = V = L: 0.1 + 0.9 of the colour, and 0.5.
+    let phong = draw(&["--shading", "phong", "--light", "0,0,1", "--color", "404040"]).pixel(20, 20).unwrap();
+    assert!(phong[0].abs_diff(64 + 128) <= 1, "{phong:?}");
+    // From the side: the light's cosine alone where the highlight is below half a level.
+    let phong = draw(&["--shading", "phong", "--light", "0,4,3", "--color", "404040"]).pixel(20, 20).unwrap();
+    let half = (1.6_f64 / 2.0).sqrt();
+    #[expect(clippy::disallowed_methods, reason = "compared with a tolerance")]
+    let expected = 64.0 * (0.1 + 0.9 * 0.6) + 255.0 * 0.5 * half.powi(32);
+    assert!((f64::from(phong[0]) - expected).abs() <= 1.5, "{phong:?} {expected}");
+    let front = draw(&["--shading", "unlit", "--color", "FF0000", "--background", "0000FF", "--threads", "2"]);
+    assert_eq!((front.pixel(20, 20), front.pixel(0, 0)), (Some(RED), Some(BLUE)));
+    for aa in ["fxaa", "ssaa2", "msaa4", "msaa8"] {
+        assert_eq!(draw(&["--shading", "unlit", "--aa", aa]).pixel(20, 20), Some([204, 204, 204, 255]), "{aa}");
+    }
+    assert_eq!(draw(&["--shading", "unlit", "--cull", "front"]).pixel(20, 20), Some([0; 4]));
+}
+
+#[test]
+fn mesh_frames_numbers_and_refuses() {
+    let folder = Folder::new();
+    folder.write("square.obj", SQUARE).write("empty.stl", "").write("other.txt", "");
+    for view in ["front", "back", "iso"] {
+        assert_success(&folder.run(&["mesh", "square.obj", "-o", "out.png", "--size", "40x30", "--view", view]));
+        let picture = folder.read("out.png");
+        let seen = picture.data().as_chunks::<4>().0.iter().filter(|pixel| pixel[3] == 255).count();
+        assert!((100..1000).contains(&seen), "{view} fills the picture: {seen}");
+        assert!((0..40).all(|x| picture.pixel(x, 0) == Some([0; 4])), "{view} fits");
+    }
+    assert_success(&folder.run(&["mesh", "square.obj", "-o", "t.png", "--size", "8x8", "--turntable", "2"]));
+    assert!(folder.has("t-000.png") && folder.has("t-001.png") && !folder.has("t.png"));
+    let info = folder.run(&["mesh", "square.obj", "--info"]);
+    assert!(text(&info.stdout).contains("4 vertices, 2 triangles"), "{info:?}");
+    assert_failure(&folder.run(&["mesh", "empty.stl", "-o", "out.png"]), "empty");
+    assert_failure(&folder.run(&["mesh", "gone.ply", "-o", "out.png"]), "gone.ply");
+    assert_failure(&folder.run(&["mesh", "other.txt", "-o", "out.png"]), "not a model");
+    assert_failure(&folder.run(&["mesh", "square.obj", "-o", "out.png", "--camera", "3"]), "no camera 3");
+}

@@ -19,6 +19,7 @@ mod golden;
 #[cfg(feature = "cli")]
 mod hostile;
 mod reference;
+mod scene_on_canvas;
 mod seeds_fragments;
 mod seeds_interpolation;
 mod seeds_lines;
