@@ -3,6 +3,7 @@
 mod builder;
 mod curve;
 mod dash;
+mod far;
 pub(crate) mod flatten;
 mod hit;
 mod measure;

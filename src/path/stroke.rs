@@ -10,6 +10,7 @@
 
 use super::builder::{Verb, segments};
 use super::dash::{self, DashScratch};
+use super::far;
 use super::flatten::PolygonSink;
 use super::outline::{LONGEST_MITER, Outliner, Pen, PointMap, Unmapped};
 use super::{Segment, Stroke};
@@ -57,11 +58,13 @@ pub(crate) fn stroke<K: PolygonSink>(
         None => (transform.scale_range().0, style.width * 0.5),
     };
     let reach = radius * LONGEST_MITER;
-    if !(farthest(bounds, transform, if similarity.is_some() || hairline { 0.0 } else { reach }) + reach < FARTHEST) {
+    let in_device = hairline || similarity.is_some();
+    let extent = farthest(bounds, transform, if in_device { 0.0 } else { reach });
+    if !(extent + reach < FARTHEST) {
         return;
     }
-    let in_device = hairline || similarity.is_some();
-    let job = Job { verbs, points, style, transform, visible, in_device };
+    let may_be_far = in_device && f64::from(extent) > far::FAR;
+    let job = Job { verbs, points, style, transform, visible, in_device, may_be_far };
     if in_device {
         let pen = Pen::new(style, radius, tolerance, transform.map_direction(Point::new(1.0, 0.0)));
         job.run(transform, Unmapped, &pen, scratch, sink);
@@ -100,6 +103,8 @@ pub(super) struct Job<'a> {
     pub(super) visible: Rect,
     /// Whether contours are offset in device space, not in user space.
     pub(super) in_device: bool,
+    /// Whether device positions may be so far away that `f32` has lost their digits.
+    may_be_far: bool,
 }
 
 impl<'a> Job<'a> {
@@ -124,6 +129,9 @@ impl<'a> Job<'a> {
             return;
         }
         for subpath in self.subpaths() {
+            if self.may_be_far && far::stroke_far_lines(&subpath, self.transform, &mut outliner) {
+                continue;
+            }
             outliner.begin(before.map_point(subpath.start), subpath.closed);
             for segment in subpath.segments() {
                 match segment {

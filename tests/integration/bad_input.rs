@@ -290,14 +290,27 @@ fn what_reaches_beyond_all_sides_covers_everything() {
             |c, p| c.draw_line((-100.0, 24.25), (200.0, 24.25), &Stroke::new(7.0), p),
         );
     }
-    // Aslant, positions as far out are rounded to what their numbers can hold.
-    draws_like(
-        "diagonal line",
-        16,
-        |c, p| c.draw_line((-1e5, -1e5), (1e5, 1e5), &Stroke::new(7.0), p),
-        |c, p| c.draw_line((-100.0, -100.0), (200.0, 200.0), &Stroke::new(7.0), p),
-    );
-    survives(|c, p| c.draw_line((-1e30, -1e30), (1e30, 1e30), &Stroke::new(7.0), p));
+    for far in [1e5, 1e9, 1e30, 1e38] {
+        draws_like(
+            &format!("diagonal line {far}"),
+            1,
+            |c, p| c.draw_line((-far, -far), (far, far), &Stroke::new(7.0), p),
+            |c, p| c.draw_line((-100.0, -100.0), (200.0, 200.0), &Stroke::new(7.0), p),
+        );
+        // A chart with an outlier: up and down again beside each other, and the corners in view as they are.
+        let chart = |high: f32| [(4.0, 40.0), (15.8, 24.0), (28.0, -high), (40.1, 24.0), (60.0, 30.0)].map(Point::from);
+        for closed in [false, true] {
+            let draw = move |c: &mut Canvas<'_>, p: &Paint, high: f32| {
+                let stroke = Stroke::new(5.0).with_join(LineJoin::Round).with_cap(LineCap::Square);
+                if closed {
+                    c.stroke_polygon(&chart(high), &stroke, p);
+                } else {
+                    c.draw_polyline(&chart(high), &stroke, p);
+                }
+            };
+            draws_like(&format!("outlier {far}"), 3, |c, p| draw(c, p, far), |c, p| draw(c, p, 6e4));
+        }
+    }
     // Beyond the numbers themselves: the corners are not finite.
     draws_nothing("scaled off", |c, p| {
         c.scale(1e30, 1e30);
