@@ -704,7 +704,7 @@ fn s111_polygon_offset_is_factor_times_slope_plus_units_times_step() {
             assert!((got - expected).abs() <= 1.01 * r + 1e-7, "{format:?} {slope} {units}: {got} {expected}");
         }
     }
-    // A decal on a tilted wall: without offset it fights or loses, with it all of it shows.
+    // A decal on a tilted wall: moved forwards all of it shows.
     let m = camera::perspective(1.0, 1.0, 0.5, 50.0);
     let patch = |half: f32, color: [f32; 4], order: [usize; 3]| {
         let corner = |x: f32, y: f32| {
@@ -732,7 +732,8 @@ fn s111_polygon_offset_is_factor_times_slope_plus_units_times_step() {
     let decal = patch(0.8, [0.0, 0.0, 1.0, 1.0], [1, 2, 0]);
     Pipeline::new(64, 64).draw(&mut alone, &Primitives::triangles(&decal), &pass(), &Values);
     assert_eq!(show(-1.0, -4.0), drawn(&alone).len());
-    assert!(show(0.0, 0.0) < drawn(&alone).len());
+    // Pushed the other way it is behind the wall: the offset decides, not the luck of rounding.
+    assert_eq!(show(1.0, 4.0), 0);
 }
 
 #[test]
