@@ -7,13 +7,13 @@ use super::counters::Counters;
 use super::fragment::{FragmentShader, Fragments, Shade};
 use super::hiz::DepthRule;
 use super::setup::{PixelBox, SampleExtent, double_area};
-use super::shade::{Output, shade_batch};
+use super::shade::{self, Output};
 use super::state::{Blend, Depth, Fill, State};
 use super::target::{BandMut, TILE, Target};
 use super::test::Tests;
 use super::traverse::{self, Traversal};
 use super::vertex::{ShadedVertices, Snap, VertexShader, Viewport, shade_vertices};
-use crate::num::level::{SimdLevel, dispatch};
+use crate::num::level::SimdLevel;
 use fearless_simd::prelude::*;
 use fearless_simd::u32x8;
 
@@ -142,7 +142,7 @@ impl Pipeline {
         let mut counters = Counters { vertices: primitives.vertices.len() as u64, ..Counters::default() };
         let level = prepared.level;
         let flush = |batch: &Batch, vertices: Vertices<'_>, band: &mut BandMut<'_>, counters: &mut Counters| {
-            dispatch!(level, simd => shade_batch(simd, fragment, &output, batch, vertices, band, counters));
+            shade::flush(level, fragment, &output, batch, vertices, band, counters);
         };
         let traversal = Traversal { binning: &prepared.binning, tests: prepared.tests, early: output.early, level };
         let count = primitives.count();
@@ -311,7 +311,7 @@ impl Pipeline {
                     }
                     batch.triangles.push(triangle);
                 }
-                dispatch!(level, simd => shade_batch(simd, fragment, &output, &batch, vertices, band, &mut counters));
+                shade::flush(level, fragment, &output, &batch, vertices, band, &mut counters);
             }
         }
         counters

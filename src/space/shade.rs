@@ -11,6 +11,7 @@ use super::state::{Blend, Compare};
 use super::target::{BandMut, TILE, over};
 use super::test::{Tests, test_group};
 use crate::num::lanes::{div255, div255_u16};
+use crate::num::level::{SimdLevel, dispatch};
 
 /// What happens to a fragment after its shader.
 #[derive(Clone, Copy, Debug)]
@@ -23,9 +24,23 @@ pub(crate) struct Output {
     pub(crate) color_mask: u32,
 }
 
-/// Shades the queued pixels in their order.
+/// Shades the queued pixels in their order, at a SIMD level. Not part of its caller, so that it is compiled once for each fragment
+/// shader and not once more for each vertex shader.
+#[inline(never)]
+pub(crate) fn flush<F: FragmentShader>(
+    level: SimdLevel,
+    shader: &F,
+    output: &Output,
+    batch: &Batch,
+    vertices: Vertices<'_>,
+    band: &mut BandMut<'_>,
+    counters: &mut Counters,
+) {
+    dispatch!(level, simd => shade_batch(simd, shader, output, batch, vertices, band, counters));
+}
+
 #[inline(always)]
-pub(crate) fn shade_batch<S: Simd, F: FragmentShader>(
+fn shade_batch<S: Simd, F: FragmentShader>(
     simd: S,
     shader: &F,
     output: &Output,
