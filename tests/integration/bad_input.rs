@@ -290,7 +290,7 @@ fn what_reaches_beyond_all_sides_covers_everything() {
             |c, p| c.draw_line((-100.0, 24.25), (200.0, 24.25), &Stroke::new(7.0), p),
         );
     }
-    for far in [1e5, 1e9, 1e30, 1e38] {
+    for far in [1e5, 1e9, 1e30, 1e36] {
         draws_like(
             &format!("diagonal line {far}"),
             1,

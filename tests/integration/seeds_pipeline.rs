@@ -61,7 +61,7 @@ fn s001_the_stages_one_after_another_are_the_draw() {
 }
 
 #[test]
-fn s002_and_s003_the_nearest_triangle_is_the_one_that_a_ray_meets_first() {
+fn s002_the_nearest_triangle_is_the_one_that_a_ray_meets_first() {
     let mut random = Random::new(2);
     let projection = camera::perspective(1.2, 1.0, 0.5, 20.0);
     let tan_half = 1.0 / f64::from(projection.to_cols_array_2d()[1][1]);
@@ -86,6 +86,28 @@ fn s002_and_s003_the_nearest_triangle_is_the_one_that_a_ray_meets_first() {
             assert_eq!(id, nearest.map_or(0, |(i, _)| i as u32 + 1), "round {round} at {x}, {y}");
         }
         assert!(compared > 6000, "{compared}");
+    }
+}
+
+/// The oracle of row 2, image order, on what can be computed by hand.
+#[test]
+fn s003_a_ray_meets_triangles_where_arithmetic_says() {
+    let near = [[-1.0, -1.0, -4.0], [3.0, -1.0, -4.0], [-1.0, 3.0, -4.0]];
+    let far = near.map(|[x, y, _]| [x, y, -8.0]);
+    let hit = rays::meet([0.0; 3], [0.0, 0.0, -1.0], near).unwrap();
+    assert!((hit.t - 4.0).abs() < 1e-9 && hit.margin() > 0.0);
+    // Twice as far away, and beside the triangle: the plane is met all the same.
+    assert!((rays::meet([0.0; 3], [0.5, 0.0, -1.0], far).unwrap().t - 8.0).abs() < 1e-9);
+    // Past the hypotenuse, behind the eye and along the plane there is nothing to meet.
+    for direction in [[0.6, 0.6, -1.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]] {
+        assert!(
+            rays::meet([0.0; 3], direction, near).is_none_or(|hit| hit.t < 0.0 || hit.margin() < 0.0),
+            "{direction:?}"
+        );
+    }
+    for scene in [[near, far], [far, near]] {
+        let (index, hit) = rays::nearest([0.0; 3], [0.0, 0.0, -1.0], &scene, 0.01).unwrap().unwrap();
+        assert_eq!((scene[index], hit.t), (near, 4.0));
     }
 }
 

@@ -1,7 +1,8 @@
-//! The seed checklist's sampling and filtering: rows 14, 113, 115 and 121 to 125.
+//! The seed checklist's sampling and filtering: rows 14, 113, 115 and 121 to 126.
 
 #![expect(clippy::disallowed_methods, reason = "compared with a tolerance, so that no machine's last bit matters")]
 
+use rastrum::space::Accumulation;
 use rastrum::{Antialias, Canvas, Color, FillRule, Paint, Path, Pixmap, Point, Segment, Shadow, Stroke, Transform};
 
 use crate::oracle::area::{Place, area, coverage};
@@ -377,4 +378,55 @@ fn s125_the_error_falls_as_the_samples_grow() {
     }
     // The limit of ever more samples is the area.
     assert!(error(Antialias::Analytic) < errors[4], "{errors:?}");
+}
+
+/// A wheel of eight spokes that turns by 0.9 of the angle between two of them each frame seems to turn backwards by 0.1;
+/// the mean of pictures taken all through the frame's time does not.
+#[test]
+fn s126_temporal_supersampling_removes_the_wagon_wheels_backward_motion() {
+    const SPOKES: f64 = 8.0;
+    const TURN: f64 = 0.9;
+    let wheel = |time: f64| -> Pixmap {
+        let mut canvas = Canvas::new(96, 96).unwrap();
+        for spoke in 0..8 {
+            let angle = (f64::from(spoke) + TURN * time) / SPOKES * std::f64::consts::TAU;
+            let tip = (48.0 + 44.0 * libm::cos(angle) as f32, 48.0 + 44.0 * libm::sin(angle) as f32);
+            canvas.draw_line((48.0, 48.0), tip, &Stroke::new(6.0), Color::BLACK);
+        }
+        canvas.into_pixmap()
+    };
+    // How strong the pattern of eight spokes is around the hub, and where in its period it stands: 0 ..= 1.
+    let pattern = |picture: &Pixmap| -> (f64, f64) {
+        let (mut re, mut im) = (0.0, 0.0);
+        for (index, pixel) in picture.data().as_chunks::<4>().0.iter().enumerate() {
+            let (x, y) = ((index % 96) as f64 - 47.5, (index / 96) as f64 - 47.5);
+            if (20.0..40.0).contains(&(x * x + y * y).sqrt()) {
+                let angle = SPOKES * libm::atan2(y, x);
+                re += f64::from(pixel[3]) * libm::cos(angle);
+                im += f64::from(pixel[3]) * libm::sin(angle);
+            }
+        }
+        ((re * re + im * im).sqrt(), libm::atan2(im, re) / std::f64::consts::TAU)
+    };
+    let motion = |from: f64, to: f64| (to - from + 1.5).rem_euclid(1.0) - 0.5;
+    let (strength, start) = pattern(&wheel(0.0));
+    let (_, next) = pattern(&wheel(1.0));
+    assert!((motion(start, next) + 0.1).abs() < 0.01, "backwards by {}", motion(start, next));
+    // At twice the rate it goes forwards: it was the sampling in time that turned it round.
+    let (_, half) = pattern(&wheel(0.5));
+    assert!((motion(start, half) - 0.45).abs() < 0.01, "{}", motion(start, half));
+    let mut frame = Accumulation::new(96, 96).unwrap();
+    for step in 0..32 {
+        frame.add(&wheel((f64::from(step) + 0.5) / 32.0), 1).unwrap();
+    }
+    let (blurred, _) = pattern(&frame.average().unwrap());
+    // Of a box over 0.9 of a period, sin(0.9 π) / 0.9 π = 0.109 of the pattern is left.
+    assert!((blurred / strength - 0.109).abs() < 0.02, "{}", blurred / strength);
+    // A shutter that is open for a whole period leaves nothing that could seem to turn.
+    frame.clear();
+    for step in 0..36 {
+        frame.add(&wheel((f64::from(step) + 0.5) / 36.0 / TURN), 1).unwrap();
+    }
+    let (rest, _) = pattern(&frame.average().unwrap());
+    assert!(rest < 0.01 * strength, "{}", rest / strength);
 }
