@@ -12,7 +12,7 @@ use crate::args::{ExportArea, RenderArguments};
 use crate::fonts::Fonts;
 use crate::notes;
 use crate::query;
-use crate::report::Failure;
+use crate::report::{self, Failure};
 use crate::reports::Done;
 use crate::simple;
 use crate::size::Size;
@@ -126,11 +126,7 @@ fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
         bytes.try_reserve_exact(length as usize + 1).map_err(io::Error::other)?;
         file.take(limit + 1).read_to_end(&mut bytes)
     });
-    read.map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => "no such file; check its name and folder".to_owned(),
-        io::ErrorKind::PermissionDenied => "may not be read; check its permissions".to_owned(),
-        _ => error.to_string(),
-    })?;
+    read.map_err(|error| report::why_unread(&error))?;
     within(bytes, limit)
 }
 

@@ -321,7 +321,12 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<Outcome, Failure> {
 fn load(arguments: &MeshArguments) -> Result<(Scene, Vec<String>, String), Failure> {
     let (mut whole, mut warnings, mut text) = (Scene::new(), Vec::new(), String::new());
     for path in &arguments.models {
-        let model = Model::load(path).map_err(|error| Failure::new(error.to_string()))?;
+        let model = Model::load(path).map_err(|error| match error {
+            rastrum::Error::Io { path, source } => {
+                Failure::new(format!("{}: {}", path.display(), report::why_unread(&source)))
+            }
+            other => Failure::new(other.to_string()),
+        })?;
         let scene = model.scene;
         let bounds = scene.bounds();
         let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles().len()).sum();
