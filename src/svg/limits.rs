@@ -1,7 +1,8 @@
 //! What a file asks for, estimated before usvg does it.
 //!
 //! usvg copies what is referenced for each reference, so that few lines can ask for more work than there is time: each of ten
-//! masks on ten shapes under ten masks. The estimate follows the references in attributes; a cycle counts once, as usvg breaks it.
+//! masks on ten shapes under ten masks. The estimate follows the references in attributes and in simple rules of style sheets; a
+//! cycle counts once, as usvg breaks it.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -24,11 +25,24 @@ pub struct ParseLimits {
     pub elements: u64,
     /// The most tests of elements against parts of style sheets' selectors. The default is 1,000,000,000.
     pub style_tests: u64,
+    /// The most pairs of characters in the same text element, which is how usvg's time for laying out text grows. The
+    /// default is 5,000,000,000: 70,000 characters in one element, some seconds.
+    pub text_pairs: u64,
+    /// The most attributes of one element. The default is 10,000; the time for reading them grows with the square.
+    pub attributes: u32,
 }
 
 impl Default for ParseLimits {
     fn default() -> Self {
-        Self { bytes: 256 << 20, nodes: 4_000_000, depth: 1024, elements: 4_000_000, style_tests: 1_000_000_000 }
+        Self {
+            bytes: 256 << 20,
+            nodes: 4_000_000,
+            depth: 1024,
+            elements: 4_000_000,
+            style_tests: 1_000_000_000,
+            text_pairs: 5_000_000_000,
+            attributes: 10_000,
+        }
     }
 }
 
@@ -37,6 +51,9 @@ impl ParseLimits {
     pub(super) fn check(&self, text: &str) -> Result<()> {
         if expanded_length(text) > self.bytes as u64 {
             return Err(Error::Limit(format!("entities make the SVG longer than the limit of {} bytes", self.bytes)));
+        }
+        if most_attributes(text) > self.attributes as usize {
+            return Err(Error::Limit(format!("an element of the SVG has more than {} attributes", self.attributes)));
         }
         let options = ParsingOptions { allow_dtd: true, nodes_limit: self.nodes, ..ParsingOptions::default() };
         // What is no XML is refused, with more to say, by usvg.
@@ -53,6 +70,9 @@ impl ParseLimits {
         }
         if estimate.style_tests > self.style_tests {
             return Err(Error::Limit("the SVG's style sheets have too many selectors for its elements".to_owned()));
+        }
+        if estimate.text_pairs > self.text_pairs {
+            return Err(Error::Limit("a text of the SVG is too long to be laid out".to_owned()));
         }
         Ok(())
     }
@@ -90,17 +110,25 @@ fn replaced(text: &str, lengths: &HashMap<&str, u64>) -> u64 {
     references.fold(text.len() as u64, |sum, name| sum.saturating_add(lengths.get(name).copied().unwrap_or(0)))
 }
 
+/// The most equals signs in one tag.
+fn most_attributes(text: &str) -> usize {
+    let tags = text.split('<').map(|rest| rest.split('>').next().unwrap_or_default());
+    tags.map(|tag| tag.bytes().filter(|byte| *byte == b'=').count()).max().unwrap_or(0)
+}
+
 /// What a document asks for.
 struct Estimate {
     depth: u32,
     elements: u64,
     style_tests: u64,
+    text_pairs: u64,
 }
 
 impl Estimate {
     fn new(document: &Document<'_>) -> Self {
         let mut ids: HashMap<&str, NodeId> = HashMap::new();
-        let (mut count, mut parts) = (0_u64, 0_u64);
+        let (mut count, mut parts, mut text_pairs) = (0_u64, 0_u64, 0_u64);
+        let mut rules = Vec::new();
         for node in document.descendants().filter(Node::is_element) {
             count += 1;
             if let Some(id) = node.attribute("id") {
@@ -108,12 +136,20 @@ impl Estimate {
             }
             if node.tag_name().name() == "style" {
                 let text = node.text().unwrap_or_default();
+                rules.extend(text.split('}').flat_map(linking_rules));
                 parts +=
                     text.split('}').map(|rule| selector_parts(rule.split('{').next().unwrap_or_default())).sum::<u64>();
             }
         }
-        let (elements, depth) = cost(document, &ids);
-        Self { depth, elements, style_tests: parts.saturating_mul(count) }
+        for text in document.descendants().filter(|node| node.tag_name().name() == "text") {
+            let length: u64 =
+                text.descendants().filter(Node::is_text).map(|node| node.text().map_or(0, str::len) as u64).sum();
+            text_pairs = text_pairs.saturating_add(length.saturating_mul(length));
+        }
+        let (elements, depth) = cost(document, &ids, &rules);
+        // Each rule with a link is tried on each element here, too.
+        parts += rules.len() as u64;
+        Self { depth, elements, style_tests: parts.saturating_mul(count), text_pairs }
     }
 }
 
@@ -127,43 +163,47 @@ fn selector_parts(selectors: &str) -> u64 {
 }
 
 /// How many elements the root stands for with all references replaced, and how deep elements are nested.
-fn cost(document: &Document<'_>, ids: &HashMap<&str, NodeId>) -> (u64, u32) {
+fn cost(document: &Document<'_>, ids: &HashMap<&str, NodeId>, rules: &[LinkingRule<'_>]) -> (u64, u32) {
     struct Frame<'a, 'i> {
         node: Node<'a, 'i>,
         sum: u64,
-        /// What is still to count, the next one last.
-        rest: Vec<NodeId>,
+        /// What is still to count, and how often, the next one last.
+        rest: Vec<(NodeId, u64)>,
+        /// How often the node itself counts for the one that led to it.
+        times: u64,
     }
-    let enter = |id: NodeId| {
+    let enter = |id: NodeId, times: u64| {
         let node = document.get_node(id)?;
-        let mut rest: Vec<NodeId> = node.children().filter(Node::is_element).map(|child| child.id()).collect();
-        rest.extend(references(node).iter().filter_map(|name| ids.get(name.as_ref())));
-        Some(Frame { node, sum: 1, rest })
+        let mut rest: Vec<(NodeId, u64)> =
+            node.children().filter(Node::is_element).map(|child| (child.id(), 1)).collect();
+        let links = references(node, ids, rules);
+        rest.extend(links.iter().filter_map(|(name, times)| Some((*ids.get(name.as_ref())?, *times))));
+        Some(Frame { node, sum: 1, rest, times })
     };
     let depth = |node: Node<'_, '_>| node.ancestors().filter(Node::is_element).count() as u32;
     let mut known: HashMap<NodeId, u64> = HashMap::new();
     let mut deepest = 0;
-    let mut frames: Vec<Frame<'_, '_>> = enter(document.root_element().id()).into_iter().collect();
+    let mut frames: Vec<Frame<'_, '_>> = enter(document.root_element().id(), 1).into_iter().collect();
     loop {
         let Some(frame) = frames.last_mut() else { return (0, deepest) };
         match frame.rest.pop() {
-            Some(next) => match known.get(&next) {
+            Some((next, times)) => match known.get(&next) {
                 // One that is being counted is a cycle, and counts nothing: see below.
-                Some(cost) => frame.sum = frame.sum.saturating_add(*cost),
+                Some(cost) => frame.sum = frame.sum.saturating_add(cost.saturating_mul(times)),
                 None => {
                     known.insert(next, 0);
-                    frames.extend(enter(next));
+                    frames.extend(enter(next, times));
                 }
             },
             None => {
-                let (node, sum) = (frame.node, frame.sum);
+                let (node, sum, times) = (frame.node, frame.sum, frame.times);
                 if node.first_element_child().is_none() {
                     deepest = deepest.max(depth(node));
                 }
                 known.insert(node.id(), sum);
                 frames.pop();
                 match frames.last_mut() {
-                    Some(outer) => outer.sum = outer.sum.saturating_add(sum),
+                    Some(outer) => outer.sum = outer.sum.saturating_add(sum.saturating_mul(times)),
                     None => return (sum, deepest),
                 }
             }
@@ -171,22 +211,76 @@ fn cost(document: &Document<'_>, ids: &HashMap<&str, NodeId>) -> (u64, u32) {
     }
 }
 
-/// The ids that an element's attributes refer to.
-fn references<'a>(node: Node<'a, '_>) -> Vec<Cow<'a, str>> {
+/// A rule of a style sheet that links to an element: the last part of its selector, and the ids.
+struct LinkingRule<'a> {
+    subject: &'a str,
+    links: Vec<&'a str>,
+}
+
+fn linking_rules(rule: &str) -> Vec<LinkingRule<'_>> {
+    let (selectors, declarations) = rule.split_once('{').unwrap_or_default();
+    let links = links(declarations);
+    if links.is_empty() {
+        return Vec::new();
+    }
+    let subjects = selectors.split(',').filter_map(|selector| selector.split_whitespace().last());
+    subjects.map(|subject| LinkingRule { subject, links: links.clone() }).collect()
+}
+
+impl LinkingRule<'_> {
+    /// Whether the rule may apply to an element. Beyond a name, a class and an id the answer is yes.
+    fn may_apply(&self, node: Node<'_, '_>) -> bool {
+        let part = self.subject.split([':', '[', '>', '+', '~']).next().unwrap_or_default();
+        if let Some(class) = part.strip_prefix('.') {
+            return node.attribute("class").is_some_and(|list| list.split_whitespace().any(|own| own == class));
+        }
+        if let Some(id) = part.strip_prefix('#') {
+            return node.attribute("id") == Some(id);
+        }
+        part.is_empty() || part.contains(['.', '#', '*']) || part == node.tag_name().name()
+    }
+}
+
+/// The ids in `url(#…)`.
+fn links(value: &str) -> Vec<&str> {
+    let inside = value.split("url(").skip(1).map(|link| link.split(')').next().unwrap_or_default());
+    inside.filter_map(|link| link.trim().trim_matches(['"', '\'']).trim().strip_prefix('#')).collect()
+}
+
+/// The ids that an element's attributes and rules refer to, and how often what they name is drawn for it: markers once for each
+/// corner of a path.
+fn references<'a>(
+    node: Node<'a, '_>,
+    ids: &HashMap<&str, NodeId>,
+    rules: &[LinkingRule<'a>],
+) -> Vec<(Cow<'a, str>, u64)> {
     let mut names: Vec<Cow<'a, str>> = Vec::new();
     for attribute in node.attributes() {
         let value = attribute.value();
         if attribute.name() == "href" {
             names.extend(value.trim().strip_prefix('#').map(Cow::Borrowed));
         } else {
-            for link in value.split("url(").skip(1) {
-                let link = link.split(')').next().unwrap_or_default();
-                let link = link.trim().trim_matches(['"', '\'']).trim();
-                names.extend(link.strip_prefix('#').map(Cow::Borrowed));
-            }
+            names.extend(links(value).into_iter().map(Cow::Borrowed));
         }
     }
-    names
+    names.extend(
+        rules.iter().filter(|rule| rule.may_apply(node)).flat_map(|rule| rule.links.iter().copied().map(Cow::Borrowed)),
+    );
+    if names.is_empty() {
+        return Vec::new();
+    }
+    // A number may stand for a corner.
+    let data = node.attribute("d").or(node.attribute("points")).unwrap_or_default();
+    let corners = data.split(|c: char| !(c.is_ascii_digit() || c == '.')).filter(|number| !number.is_empty()).count();
+    let is_marker = |name: &str| {
+        let node = ids.get(name).and_then(|id| node.document().get_node(*id));
+        node.is_some_and(|node| node.tag_name().name() == "marker")
+    };
+    let count = |name: Cow<'a, str>| {
+        let times = if corners > 1 && is_marker(&name) { corners as u64 } else { 1 };
+        (name, times)
+    };
+    names.into_iter().map(count).collect()
 }
 
 #[cfg(test)]
@@ -208,6 +302,28 @@ mod tests {
         assert_eq!(elements("<g id='a'><path/><path/></g><use href='#a'/><use xlink:href='#a'/>"), 1 + 3 + 2 * 4);
         assert_eq!(elements("<mask id='m'><rect/></mask><g mask='url(#m)' fill=\"url('#m')\"/>"), 1 + 2 + 1 + 2 * 2);
         assert_eq!(elements("<g id='m'/><path style='fill:none;marker-start:url( #m )'/>"), 1 + 1 + 2);
+    }
+
+    #[test]
+    fn markers_count_for_each_corner_and_rules_as_attributes() {
+        // The root, the marker with its path, and the path with three corners, of which a number is the half.
+        assert_eq!(
+            elements("<marker id='m'><path/></marker><path d='M0 0L1 1L2 2' marker-mid='url(#m)'/>"),
+            1 + 2 + 1 + 6 * 2
+        );
+        assert_eq!(
+            elements("<style>g, .a{mask:url(#m)}</style><mask id='m'><path/></mask><path class='b a'/><rect/>"),
+            1 + 1 + 2 + 1 + 2 + 1
+        );
+    }
+
+    #[test]
+    fn long_texts_and_crowds_of_attributes_are_refused() {
+        let refused = |content: &str| ParseLimits::default().check(&svg(content)).is_err();
+        assert!(refused(&format!("<text>{}</text>", "a".repeat(80_000))));
+        assert!(!refused(&format!("<text>{}</text>", "a".repeat(20_000))));
+        let attributes: String = (0..11_000).map(|i| format!(" a{i}=''")).collect();
+        assert!(refused(&format!("<g{attributes}/>")));
     }
 
     #[test]

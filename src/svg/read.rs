@@ -66,9 +66,9 @@ fn utf8(text: &[u8]) -> Result<&str> {
 
 fn parse_text(text: &str, options: &usvg::Options<'_>) -> Result<usvg::Tree> {
     usvg::Tree::from_str(text, options).map_err(|error| match error {
-        usvg::Error::ParsingFailed(usvg::roxmltree::Error::NodesLimitReached) => {
-            Error::Limit("the SVG nests its elements more than 1,024 deep".to_owned())
-        }
+        usvg::Error::ParsingFailed(usvg::roxmltree::Error::NodesLimitReached) => Error::Limit(
+            "the SVG nests its elements more than 1,024 deep, or has more than 1,000,000 of them".to_owned(),
+        ),
         usvg::Error::ParsingFailed(error) => Error::Format(format!("not an SVG: {error}")),
         usvg::Error::InvalidSize => {
             Error::Format("the SVG has no valid size: width and height must be above 0".to_owned())
