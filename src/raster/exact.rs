@@ -123,17 +123,22 @@ impl Part {
     }
 }
 
-/// Adds the edges of a shape and notes which pixels they touch once and more often. Horizontal edges add nothing,
+/// Adds the edges of a shape, which go on from `before`, and notes which pixels they touch once and more often. Horizontal ones add nothing,
 /// but touch pixels as well: windings change at them.
 ///
 /// The pixel in which an edge starts where the one before it ended is not touched twice by that: along each scanline
 /// either one of them is crossed, or both, one way and the other, and the sum of their areas is right by any fill rule. But
 /// of three edges in one pixel the first and the third may cross, unless all go up or all down.
 #[inline(always)]
-pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edges: &[Edge], top: i32, strips: usize) {
+pub(crate) fn add_touching_edges<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    edges: &[Edge],
+    top: i32,
+    strips: usize,
+    mut before: Option<Edge>,
+) {
     cells.keep_marks();
-    let mut before: Option<Edge> = None;
-    let mut first: Option<Edge> = None;
     let mut last_joint: Option<(BandPixel, bool)> = None;
     for edge in edges {
         if edge.y0 == edge.y1 {
@@ -149,23 +154,14 @@ pub(crate) fn add_touching_edges<S: Simd>(simd: S, cells: &mut Accumulator, edge
             last_joint = Some((pixel, turns || same.is_some_and(|(_, turned)| turned)));
             single.then_some(pixel)
         });
-        if before.is_none_or(|before| !before.meets(*edge)) {
-            first = Some(*edge);
-        }
-        // Where an outline closes, unless its first or last edge begins and ends in one pixel.
-        let closing = first.filter(|first| edge.meets(*first)).and_then(|first| {
-            let pixel = pixel_within(edge.x1, edge.y1 - top)?;
-            let others = [(first.x1, first.y1), (edge.x0, edge.y0)];
-            others.iter().all(|(x, y)| pixel_within(*x, y - top) != Some(pixel)).then_some(pixel)
-        });
-        let old = [joint, closing].map(|pixel| pixel.and_then(|pixel| Some((pixel, *cells.marks(pixel)?))));
+        let old = joint.and_then(|pixel| Some((pixel, *cells.marks(pixel)?)));
         add_edge::<S, true>(simd, cells, *edge, top, strips, &[]);
-        for (pixel, old) in old.into_iter().flatten() {
-            if let Some(marks) = cells.marks(pixel) {
-                let row = 1 << pixel.row;
-                marks.once = marks.once & !row | old.once & row;
-                marks.twice = marks.twice & !row | old.twice & row;
-            }
+        if let Some((pixel, old)) = old
+            && let Some(marks) = cells.marks(pixel)
+        {
+            let row = 1 << pixel.row;
+            marks.once = marks.once & !row | old.once & row;
+            marks.twice = marks.twice & !row | old.twice & row;
         }
         before = Some(*edge);
     }
@@ -182,8 +178,10 @@ pub(crate) fn add_touching_crowd<S: Simd>(
     strips: usize,
     rule: FillRule,
 ) {
+    let mut before = None;
     for crowd in edges.chunks(CROWD - 1) {
-        add_touching_edges(simd, cells, crowd, top, strips);
+        add_touching_edges(simd, cells, crowd, top, strips, before);
+        before = crowd.last().copied();
         cells.set_aside();
     }
     cells.bring_back(rule);
@@ -678,7 +676,7 @@ mod tests {
         let next = points.iter().cycle().skip(1);
         let edges: Vec<Edge> =
             points.iter().zip(next).map(|(a, b)| Edge { x0: a.0, y0: a.1, x1: b.0, y1: b.1 }).collect();
-        dispatch!(SimdLevel::best(), simd => add_touching_edges(simd, &mut cells, &edges, 0, 4));
+        dispatch!(SimdLevel::best(), simd => add_touching_edges(simd, &mut cells, &edges, 0, 4, None));
         let mut found = Vec::new();
         for strip in 0..4 {
             for (column, marks) in cells.strip(strip).unwrap().marks.iter().enumerate() {
