@@ -15,7 +15,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{u8x32, u16x16, u32x8};
 
-use super::words::{Words, duplicate_odd, mask_words, mix, quotient_255};
+use super::words::{Words, duplicate_odd, mask_words, min_u8, mix, quotient_255};
 
 /// `color` (premultiplied) over 16 pixels by `mask`. Components above the colour's alpha are lowered to it.
 #[inline(always)]
@@ -151,8 +151,8 @@ fn over_halves<S: Simd>(
 /// Eight times the colour, components above its alpha lowered to it.
 #[inline(always)]
 fn solid<S: Simd>(simd: S, color: [u8; 4]) -> Words<S> {
-    let color = color.map(|component| if component > color[3] { color[3] } else { component });
-    Words::from_bytes(u32x8::splat(simd, u32::from_le_bytes(color)).bitcast())
+    let alpha = u8x32::splat(simd, color[3]);
+    Words::from_bytes(min_u8(u32x8::splat(simd, u32::from_le_bytes(color)).bitcast(), alpha))
 }
 
 /// Every component times `by` / 255, rounded.

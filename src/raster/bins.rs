@@ -71,6 +71,31 @@ impl Edges<'_> {
         }
     }
 
+    /// The edges eight at a time: where they start, where they end, and how many there are.
+    #[inline(always)]
+    pub(super) fn for_eights(self, mut f: impl FnMut(&[FixedPoint; 8], &[FixedPoint; 8], usize)) {
+        for starts in self.starts.chunks(8) {
+            let (Some(first), Some(last)) = (starts.first(), starts.last()) else { break };
+            let (mut from, mut to) = ([FixedPoint::default(); 8], [FixedPoint::default(); 8]);
+            // Numbers go up: where the last is as much more than the first as there are, the edges follow each other.
+            let near = self.points.get(*first as usize..).and_then(|rest| rest.first_chunk::<9>());
+            if let Some(points) = near
+                && (last - first) as usize + 1 == starts.len()
+            {
+                let [start @ .., _] = points;
+                let [_, end @ ..] = points;
+                (from, to) = (*start, *end);
+            } else {
+                for (start, (from, to)) in starts.iter().zip(from.iter_mut().zip(&mut to)) {
+                    if let Some(points) = self.points.get(*start as usize..).and_then(|rest| rest.first_chunk::<2>()) {
+                        [*from, *to] = *points;
+                    }
+                }
+            }
+            f(&from, &to, starts.len());
+        }
+    }
+
     /// At most `size` edges at a time.
     pub(crate) fn chunks(self, size: usize) -> impl Iterator<Item = Self> {
         self.starts.chunks(size).map(move |starts| Self { starts, ..self })

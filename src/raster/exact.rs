@@ -377,7 +377,7 @@ fn gather<S: Simd>(simd: S, cells: &Strip, edge: &Edge, top: i32, rows: &mut [Ro
         return;
     }
     for_strip_parts(
-        *edge,
+        edge.downward(),
         top,
         1,
         #[inline(always)]

@@ -14,11 +14,12 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
+use super::batch::add_edges;
 use super::bins::Edges;
 use super::cell::{Accumulator, Column, FULL, Marks, Strip};
 use super::edge::{Edge, EdgeLine};
 use crate::num::fixed;
-use crate::num::lanes::{max_f32, max_i32, min_f32, min_i32, round_f32};
+use crate::num::lanes::{greater_f32, lesser_f32, max_i32, min_i32, round_f32};
 use crate::style::FillRule;
 use crate::surface::block::BLOCK_HEIGHT;
 
@@ -49,6 +50,18 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
+    /// Whether nothing from a position (24.8 fixed point) on matters.
+    #[inline(always)]
+    pub(super) fn ends_before(self, least: i32) -> bool {
+        least << (FINE_SHIFT - fixed::SHIFT) >= self.high
+    }
+
+    /// Whether all that lies between two positions (24.8 fixed point) matters.
+    #[inline(always)]
+    pub(super) fn holds(self, least: i32, greatest: i32) -> bool {
+        least << (FINE_SHIFT - fixed::SHIFT) >= self.low && greatest << (FINE_SHIFT - fixed::SHIFT) < self.high
+    }
+
     pub(crate) const NOTHING: Self = Self { low: i32::MIN, high: i32::MIN };
 
     /// The columns `first..end`.
@@ -72,7 +85,20 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
     strips: usize,
     reaches: &[Reach],
 ) {
-    let winding = edge.downward().4;
+    add_downward::<S, TOUCH>(simd, cells, edge.downward(), top, strips, reaches);
+}
+
+/// As [`add_edge`], for an edge as [`Edge::downward`] gives it.
+#[inline(always)]
+pub(super) fn add_downward<S: Simd, const TOUCH: bool>(
+    simd: S,
+    cells: &mut Accumulator,
+    edge: (i32, i32, i32, i32, i32),
+    top: i32,
+    strips: usize,
+    reaches: &[Reach],
+) {
+    let winding = edge.4;
     for_strip_parts(
         edge,
         top,
@@ -82,16 +108,15 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
     );
 }
 
-/// Calls `part` with each of the strips below `top` that an edge crosses, and with where it starts and ends there: x in
+/// Calls `part` with each of the strips below `top` that an edge (as [`Edge::downward`] gives it) crosses, and with where it starts and ends there: x in
 /// 20.12, y in 24.8 fixed point, downwards.
 #[inline(always)]
 pub(super) fn for_strip_parts(
-    edge: Edge,
+    (x0, y0, x1, y1, _): (i32, i32, i32, i32, i32),
     top: i32,
     strips: usize,
     mut part: impl FnMut(usize, (i32, i32), (i32, i32)),
 ) {
-    let (x0, y0, x1, y1, _) = edge.downward();
     let first = (y0 - top) >> STRIP_SHIFT;
     let last = (y1 - 1 - top) >> STRIP_SHIFT;
     let (start, end) = ((x0 << 4, y0), (x1 << 4, y1));
@@ -150,13 +175,22 @@ fn add_piece<S: Simd, const TOUCH: bool>(
 ) {
     let (first, last) = RowParts::<S>::columns((start_x, start_y), (end_x, end_y));
     let rise = (end_y - start_y) as f32;
-    if last > first + 4 && (last - first) as f32 * 256.0 > FLAT_COLUMNS_PER_ROW * rise {
+    if is_flat(first, last, rise) {
         let round = |x: i32| (x + (1 << (FINE_SHIFT - fixed::SHIFT - 1))) >> (FINE_SHIFT - fixed::SHIFT);
         add_flat::<TOUCH>(cells, round(start_x), start_y, round(end_x), end_y, top, winding);
         return;
     }
 
     let row = RowParts::new(simd, (start_x, start_y), (end_x, end_y), winding, top, first);
+    add_row_parts(simd, cells, row, first, last);
+    if TOUCH {
+        row.touch(simd, cells.marks.get_mut(first..=last).unwrap_or(&mut []));
+    }
+}
+
+/// Adds parts that lie in columns `first ..= last`.
+#[inline(always)]
+pub(super) fn add_row_parts<S: Simd>(simd: S, cells: &mut Strip, row: RowParts<S>, first: usize, last: usize) {
     if last - first <= 1 {
         cells.occupy_pair(first, last + 1);
         if let Some(columns) = cells.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) {
@@ -168,9 +202,27 @@ fn add_piece<S: Simd, const TOUCH: bool>(
             add_columns(simd, columns, row);
         }
     }
-    if TOUCH {
-        row.touch(simd, cells.marks.get_mut(first..=last).unwrap_or(&mut []));
-    }
+}
+
+/// A piece of an edge in one strip, as numbers that are the same in all of its rows.
+#[derive(Clone, Copy)]
+pub(super) struct PieceLine {
+    /// How far below the strip's top it starts, and how far down it goes, in 1/256 pixel.
+    pub(super) below: i32,
+    pub(super) height: i32,
+    /// x where it starts, in 1/256 pixel from the first column's left side, and its change per unit of y.
+    pub(super) start: f32,
+    pub(super) slope: f32,
+    /// |dy / dx| times the winding; 0 where it is upright.
+    pub(super) steep: f32,
+    /// ±1.
+    pub(super) winding: i32,
+}
+
+/// Whether a piece between two columns that climbs `rise` should be walked row by row.
+#[inline(always)]
+pub(super) fn is_flat(first: usize, last: usize, rise: f32) -> bool {
+    last > first + 4 && (last - first) as f32 * 256.0 > FLAT_COLUMNS_PER_ROW * rise
 }
 
 /// The parts of an edge in the eight rows of a strip; x in 1/256 pixel from the first column's left side.
@@ -212,26 +264,38 @@ impl<S: Simd> RowParts<S> {
         first: usize,
     ) -> Self {
         let (run, rise) = (fine(end_x - start_x), (end_y - start_y) as f32);
-        let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) + (top - start_y);
-        let height = i32x8::splat(simd, end_y - start_y);
+        let line = PieceLine {
+            below: start_y - top,
+            height: end_y - start_y,
+            start: fine(start_x - ((first as i32) << FINE_SHIFT)),
+            slope: run / rise,
+            // Upright pieces have t = 0.
+            steep: if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() },
+            winding,
+        };
+        Self::of(simd, line)
+    }
+
+    /// The parts of a piece.
+    #[inline(always)]
+    pub(super) fn of(simd: S, PieceLine { below, height, start, slope, steep, winding }: PieceLine) -> Self {
+        let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) - below;
         let zero = i32x8::splat(simd, 0);
-        let upper = min_i32(max_i32(rows, zero), height);
-        let lower = min_i32(max_i32(rows + 256, zero), height);
+        let limit = i32x8::splat(simd, height);
+        let upper = min_i32(max_i32(rows, zero), limit);
+        let lower = min_i32(max_i32(rows + 256, zero), limit);
         let dy = lower - upper;
-        let start = fine(start_x - ((first as i32) << FINE_SHIFT));
         let start8 = f32x8::splat(simd, start);
-        let slope = run / rise;
         let upper_x = upper.to_float::<f32x8<S>>() * slope + start8;
         let lower_x = lower.to_float::<f32x8<S>>() * slope + start8;
         Self {
-            left: min_f32(upper_x, lower_x),
-            right: max_f32(upper_x, lower_x),
+            left: lesser_f32(upper_x, lower_x),
+            right: greater_f32(upper_x, lower_x),
             upper,
             lower,
             start,
             slope,
-            // Upright pieces have t = 0.
-            steep: f32x8::splat(simd, if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() }),
+            steep: f32x8::splat(simd, steep),
             beyond: dy.to_float::<f32x8<S>>() * (2.0 * winding as f32),
             total: dy * (512 * winding),
         }
@@ -262,12 +326,12 @@ fn add_two_columns<S: Simd>(simd: S, [here, next, after]: &mut [Column; 3], row:
     let RowParts { left, right, steep, beyond, total, .. } = row;
     let zero = f32x8::splat(simd, 0.0);
     let side = f32x8::splat(simd, 256.0);
-    let t = max_f32(min_f32(right, side) - left, zero);
+    let t = greater_f32(lesser_f32(right, side) - left, zero);
     let width = right - left;
     let within = steep * t * t;
-    let area = round_f32(within + beyond * max_f32(side - right, zero));
+    let area = round_f32(within + beyond * greater_f32(side - right, zero));
     let rest = steep * width * width - within;
-    let next_area = round_f32(rest + beyond * min_f32(512.0 - right, side));
+    let next_area = round_f32(rest + beyond * lesser_f32(512.0 - right, side));
     add_to(simd, here, area);
     add_to(simd, next, next_area - area);
     add_to(simd, after, total - next_area);
@@ -283,9 +347,9 @@ fn add_columns<S: Simd>(simd: S, columns: &mut [Column], row: RowParts<S>) {
     let mut side = whole;
     let Some((spill, columns)) = columns.split_last_mut() else { return };
     for column in columns {
-        let t = max_f32(min_f32(right, side) - left, zero);
+        let t = greater_f32(lesser_f32(right, side) - left, zero);
         let up_to_here = steep * t * t;
-        let right_of = min_f32(max_f32(side - right, zero), whole);
+        let right_of = lesser_f32(greater_f32(side - right, zero), whole);
         let here = round_f32((up_to_here - within) + beyond * right_of);
         add_to(simd, column, here - area);
         (within, area) = (up_to_here, here);
@@ -380,10 +444,7 @@ pub(crate) fn add_crowd<S: Simd>(
     reaches: &[Reach],
 ) {
     for crowd in edges.chunks(CROWD - 1) {
-        crowd.for_each(
-            #[inline(always)]
-            |edge| add_edge::<S, false>(simd, cells, edge, top, strips, reaches),
-        );
+        add_edges(simd, cells, crowd, top, strips, reaches);
         cells.set_aside();
     }
     cells.bring_back(FillRule::NonZero);

@@ -176,39 +176,57 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
         *row = ((height * 255 + 128) >> 8) as u8;
     }
     let (first, last) = ((left >> BLOCK_SHIFT) as usize, ((right - 1) >> BLOCK_SHIFT) as usize);
-    let edge_block = |index: usize| -> MaskBlock {
-        let widths: [u32; BLOCK_WIDTH] = parts((index as i32) << BLOCK_SHIFT, left, right);
-        let row_of = |height: u32| -> [u8; BLOCK_WIDTH] {
-            let mut row = [0; BLOCK_WIDTH];
-            for (value, width) in row.iter_mut().zip(widths) {
-                *value = ((height * width * 255 + (1 << 15)) >> 16) as u8;
-            }
-            row
-        };
-        // Most rows are covered over their whole height.
-        let whole = row_of(fixed::ONE as u32);
-        let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
-        for (row, height) in mask.iter_mut().zip(heights) {
-            *row = match height {
-                0 => continue,
-                256 => whole,
-                part => row_of(part),
-            };
-        }
-        mask
-    };
-    let whole = |index: usize| left <= (index as i32) << BLOCK_SHIFT && right >= (index as i32 + 1) << BLOCK_SHIFT;
+    let side = |index: usize| (index as i32) << BLOCK_SHIFT;
+    let whole = |index: usize| left <= side(index) && right >= side(index + 1);
     let start = if whole(first) { first } else { first + 1 };
     let end = if whole(last) { last + 1 } else { last };
     if start > first && sink.wants(first) {
-        sink.block(simd, first, &edge_block(first));
+        sink.block(simd, first, &edge_block(simd, heights, left - side(first), right - side(first)));
     }
     if start < end {
         sink.run(simd, start, end, &rows);
     }
     if end <= last && (last > first || start == first) && sink.wants(last) {
-        sink.block(simd, last, &edge_block(last));
+        sink.block(simd, last, &edge_block(simd, heights, left - side(last), right - side(last)));
     }
+}
+
+/// The coverage of a block between `left` and `right`, in 1/256 pixel from the block's left side, of whose rows so much of
+/// the height is covered.
+#[inline(always)]
+fn edge_block<S: Simd>(simd: S, heights: [u32; BLOCK_HEIGHT], left: i32, right: i32) -> MaskBlock {
+    // Most rows are covered over their whole height.
+    let whole = covered_row(simd, left, right, fixed::ONE as u32);
+    let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
+    for (row, height) in mask.iter_mut().zip(heights) {
+        *row = match height {
+            0 => continue,
+            256 => whole,
+            part => covered_row(simd, left, right, part),
+        };
+    }
+    mask
+}
+
+/// The coverage of a block's row between `left` and `right`, in 1/256 pixel from the block's left side, for `height` / 256
+/// of the row.
+#[inline(always)]
+fn covered_row<S: Simd>(simd: S, left: i32, right: i32, height: u32) -> [u8; BLOCK_WIDTH] {
+    const WIDTH: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
+    let value = |width: i32| ((height * width as u32 * 255 + (1 << 15)) >> 16) as u8;
+    let splat = |value: i32| u8x16::splat(simd, value as u8);
+    let columns = u8x16::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
+    let zero = u8x16::splat(simd, 0);
+    let (left, right) = (left.max(0), right.min(WIDTH));
+    // The pixels in which it starts and ends, which may be one.
+    let (first, last) = (left >> fixed::SHIFT, right >> fixed::SHIFT);
+    let inner = u8x16::splat(simd, value(fixed::ONE));
+    let mut row = columns.simd_lt(splat(last)).select(inner, zero);
+    row = columns.simd_eq(splat(last)).select(u8x16::splat(simd, value(right - (last << fixed::SHIFT))), row);
+    row = columns.simd_lt(splat(first)).select(zero, row);
+    let end = right.min((first + 1) << fixed::SHIFT);
+    row = columns.simd_eq(splat(first)).select(u8x16::splat(simd, value(end - left)), row);
+    row.to_array()
 }
 
 /// Reports blocks `start..end`, where nothing changes along x.

@@ -46,8 +46,6 @@ pub(super) struct BandScratch {
     /// Of the draw in hand, for each strip: the blocks in which it can be seen, and their columns.
     pub(super) visible: Vec<(usize, usize)>,
     pub(super) reaches: Vec<Reach>,
-    /// Chunk, item and place in the band of what may hide something.
-    pub(super) candidates: Vec<(usize, usize, u32)>,
 }
 
 /// What all of a band's steps need to know.
@@ -110,6 +108,9 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
             let place = order;
             scratch.occlusion.release(place);
             order += 1;
+            if scratch.kept.drop_hidden(place) {
+                continue;
+            }
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };
             let edges = chunk.edges(band, *item);
             match command {

@@ -83,7 +83,6 @@ fn build_clip_inner<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScrat
     }
     // Other draws may show what this one hides.
     scratch.visible.clear();
-    scratch.reaches.clear();
     for (id, node) in missing.into_iter().rev() {
         let mut mask = scratch.clips.spare.pop().unwrap_or_default();
         mask.reset(frame.blocks, frame.strips);

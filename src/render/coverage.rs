@@ -3,10 +3,12 @@
 use fearless_simd::Simd;
 
 use super::band::{BandScratch, Frame};
+use super::occlusion::reach;
 use super::prepare::is_exact;
 use crate::display_list::{Geometry, Span};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::fixed;
+use crate::raster::batch::add_edges;
 use crate::raster::bins::Edges;
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
@@ -105,16 +107,15 @@ fn accumulate_inner<S: Simd>(
     let top = frame.top << fixed::SHIFT;
     let grid = match antialias {
         Antialias::Analytic => {
+            let BandScratch { cells, reaches, visible, .. } = scratch;
+            reaches.clear();
+            reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
             // Sums by the even-odd rule may wrap around: what is lost is even.
             if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
-                kernel::add_crowd(simd, &mut scratch.cells, edges, top, frame.strips, &scratch.reaches);
+                kernel::add_crowd(simd, cells, edges, top, frame.strips, reaches);
                 return Coverage::Cells(rule.into());
             }
-            let BandScratch { cells, reaches, .. } = scratch;
-            edges.for_each(
-                #[inline(always)]
-                |edge| kernel::add_edge::<S, false>(simd, cells, edge, top, frame.strips, reaches),
-            );
+            add_edges(simd, cells, edges, top, frame.strips, reaches);
             return Coverage::Cells(rule.into());
         }
         Antialias::Exact => {

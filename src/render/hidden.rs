@@ -6,7 +6,6 @@ use fearless_simd::Simd;
 use super::band::{BandScratch, Frame};
 use super::coverage::accumulate;
 use super::kept::KeepSink;
-use super::occlusion::reach;
 use crate::blend::BlendMode;
 use crate::display_list::{ClipId, Command, Draw, Geometry};
 use crate::geom::IntRect;
@@ -23,40 +22,32 @@ const WORK_PER_BLOCK: usize = 100;
 /// Lets the band's opaque shapes claim the blocks that they cover whole, front to back.
 #[inline(never)]
 pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch) {
-    let mut candidates = std::mem::take(&mut scratch.candidates);
-    candidates.clear();
-    let (mut order, mut depth) = (0_u32, 0_u32);
-    for (chunk_index, chunk) in frame.chunks.iter().enumerate() {
+    let mut place = frame.chunks.iter().filter_map(|chunk| chunk.band(frame.index)).map(|band| band.items.len()).sum();
+    let (mut depth, mut work) = (0_u32, 0);
+    for chunk in frame.chunks.iter().rev() {
         let Some(band) = chunk.band(frame.index) else { continue };
-        for (item_index, item) in band.items.iter().enumerate() {
+        for item in band.items.iter().rev() {
+            place -= 1;
             match frame.list.commands.get(item.command as usize) {
-                Some(Command::BeginLayer(_) | Command::BeginMask(_)) => depth += 1,
-                Some(Command::EndLayer(_) | Command::EndMask(..)) => depth = depth.saturating_sub(1),
-                Some(Command::Draw(draw))
-                    if depth == 0 && may_hide(frame, draw, chunk.edges(band, *item).len(), order as usize) =>
-                {
-                    candidates.push((chunk_index, item_index, order));
+                Some(Command::EndLayer(_) | Command::EndMask(..)) => depth += 1,
+                Some(Command::BeginLayer(_) | Command::BeginMask(_)) => depth = depth.saturating_sub(1),
+                Some(Command::Draw(draw)) if depth == 0 => {
+                    let edges = chunk.edges(band, *item);
+                    if !may_hide(frame, draw, edges.len(), place) {
+                        continue;
+                    }
+                    // Where little is hidden, the search costs more than it gains.
+                    if work > FAIR_TRIAL && scratch.occlusion.count() * WORK_PER_BLOCK < work || scratch.kept.is_full()
+                    {
+                        return;
+                    }
+                    work += edges.len() + 1;
+                    claim_blocks(simd, frame, scratch, draw, edges, place as u32);
                 }
                 _ => {}
             }
-            order += 1;
         }
     }
-    let mut work = 0;
-    for &(chunk, item, order) in candidates.iter().rev() {
-        // Where little is hidden, the search costs more than it gains.
-        if work > FAIR_TRIAL && scratch.occlusion.count() * WORK_PER_BLOCK < work || scratch.kept.is_full() {
-            break;
-        }
-        let Some(chunk) = frame.chunks.get(chunk) else { continue };
-        let Some(band) = chunk.band(frame.index) else { continue };
-        let Some(item) = band.items.get(item) else { continue };
-        let Some(Command::Draw(draw)) = frame.list.commands.get(item.command as usize) else { continue };
-        let edges = chunk.edges(band, *item);
-        work += edges.len() + 1;
-        claim_blocks(simd, frame, scratch, draw, edges, order);
-    }
-    scratch.candidates = candidates;
 }
 
 /// Whether a shape is worth a look: opaque, with room for whole blocks, and not mostly edges; the less so, the fewer
@@ -106,20 +97,20 @@ fn claim_blocks<S: Simd>(
 
 /// Notes for each strip where a draw within `bounds` can be seen; false if nowhere. Without hidden blocks it notes
 /// nothing, which stands for everywhere.
+#[inline(always)]
 pub(super) fn find_visible(frame: &Frame<'_>, scratch: &mut BandScratch, bounds: IntRect) -> bool {
-    scratch.visible.clear();
-    scratch.reaches.clear();
-    if !scratch.occlusion.is_some() {
+    let BandScratch { occlusion, visible, .. } = scratch;
+    visible.clear();
+    if !occlusion.is_some() {
         return true;
     }
+    let strip_of = |y: i32| ((y - frame.top).max(0) as usize / BLOCK_HEIGHT).min(frame.strips);
+    let (first, end) = (strip_of(bounds.top), strip_of(bounds.bottom + (BLOCK_HEIGHT as i32 - 1)));
+    visible.resize(frame.strips, (0, 0));
     let mut seen = false;
-    for strip in 0..frame.strips {
-        let top = frame.strip_top(strip);
-        let outside = bounds.top >= top + BLOCK_HEIGHT as i32 || bounds.bottom <= top;
-        let visible = if outside { (0, 0) } else { scratch.occlusion.visible(strip, bounds) };
+    for (strip, visible) in visible.iter_mut().enumerate().take(end).skip(first) {
+        *visible = occlusion.visible(strip, bounds);
         seen |= visible.0 < visible.1;
-        scratch.visible.push(visible);
-        scratch.reaches.push(reach(visible));
     }
     seen
 }

@@ -60,6 +60,12 @@ impl Kept {
         self.shapes.last().is_some_and(|(last, ..)| *last == order)
     }
 
+    /// Drops the shape at place `order` if it was kept and nothing of it can be seen, and says so.
+    #[inline(always)]
+    pub(super) fn drop_hidden(&mut self, order: u32) -> bool {
+        self.shapes.pop_if(|(last, first_piece, _)| *last == order && *first_piece == self.pieces.len()).is_some()
+    }
+
     /// Reports what was kept last, strip by strip from left to right, and drops it.
     #[inline(always)]
     pub(super) fn take(&mut self, mut f: impl FnMut(Place, KeptCoverage<'_>)) {

@@ -56,17 +56,35 @@ impl Occlusion {
 
     /// The first and the end of the blocks of `bounds` (device pixels) in a strip between which all that are
     /// visible lie; empty if none is.
+    #[inline(always)]
     pub(super) fn visible(&self, strip: usize, bounds: IntRect) -> (usize, usize) {
         let first = bounds.left.max(0) as usize / BLOCK_WIDTH;
         let end = (bounds.right.max(0) as usize).div_ceil(BLOCK_WIDTH);
+        if first >= end {
+            return (end, end);
+        }
+        let first_word = first / 64;
+        if first_word != (end - 1) / 64 {
+            return self.visible_in_words(strip, first, end);
+        }
+        // Canvases of up to 1,024 pixels have one word a row.
+        let word = self.hidden.get(strip * self.words + first_word).copied().unwrap_or(0);
+        let seen = !word & between(first, end, first_word * 64);
+        if seen == 0 {
+            return (end, end);
+        }
+        let start = first_word * 64;
+        (start + seen.trailing_zeros() as usize, start + 64 - seen.leading_zeros() as usize)
+    }
+
+    #[inline(never)]
+    fn visible_in_words(&self, strip: usize, first: usize, end: usize) -> (usize, usize) {
         let words = self.hidden.get(strip * self.words..(strip + 1) * self.words).unwrap_or(&[]);
         let (mut seen_first, mut seen_end) = (end, end);
         let mut any = false;
         for (index, word) in words.iter().enumerate().take(end.div_ceil(64)).skip(first / 64) {
             let start = index * 64;
-            let low = u64::MAX << first.saturating_sub(start).min(63);
-            let high = u64::MAX >> (start + 64).saturating_sub(end).min(63);
-            let visible = !word & low & high;
+            let visible = !word & between(first, end, start);
             if visible != 0 {
                 if !any {
                     seen_first = start + visible.trailing_zeros() as usize;
@@ -104,12 +122,9 @@ impl Occlusion {
     /// Claims those of the blocks `start..end` that no shape further in front has.
     pub(super) fn claim(&mut self, order: u32, strip: usize, start: usize, end: usize) {
         for index in start / 64..end.div_ceil(64) {
-            let first = index * 64;
-            let low = u64::MAX << start.saturating_sub(first).min(63);
-            let high = u64::MAX >> (first + 64).saturating_sub(end).min(63);
             let place = strip * self.words + index;
             if let Some(word) = self.hidden.get_mut(place) {
-                let blocks = low & high & !*word;
+                let blocks = between(start, end, index * 64) & !*word;
                 if blocks != 0 {
                     *word |= blocks;
                     self.count += blocks.count_ones() as usize;
@@ -118,6 +133,12 @@ impl Occlusion {
             }
         }
     }
+}
+
+/// The blocks `first..end`, of which some lie in the word whose first block is `start`, as bits of it.
+#[inline(always)]
+fn between(first: usize, end: usize, start: usize) -> u64 {
+    (u64::MAX << first.saturating_sub(start).min(63)) & (u64::MAX >> (start + 64).saturating_sub(end).min(63))
 }
 
 /// The part of a strip in which something of a shape can be seen.

@@ -19,6 +19,7 @@ use crate::raster::sweep::BlockSink;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, PixelBlock};
 
 const ROW_BYTES: usize = BLOCK_WIDTH * 4;
+const FULL_ROW: [u8; BLOCK_WIDTH] = [255; BLOCK_WIDTH];
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
 const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 
@@ -274,7 +275,6 @@ impl Painter<'_, '_, '_> {
                 }
                 continue;
             }
-            let last = start + blocks.len();
             for pixels in blocks {
                 if coverage == 255 {
                     over_solid_full(simd, pixels, color);
@@ -283,14 +283,14 @@ impl Painter<'_, '_, '_> {
                 }
             }
             if !tail.is_empty() {
-                self.surface.with_row(
-                    row,
-                    last,
-                    #[inline(always)]
-                    |pixels| {
-                        over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
-                    },
-                );
+                let mut pixels = [0; ROW_BYTES];
+                for (copy, byte) in pixels.iter_mut().zip(tail.iter()) {
+                    *copy = *byte;
+                }
+                over_solid_row(simd, &mut pixels, color, &[coverage; BLOCK_WIDTH]);
+                for (byte, copy) in tail.iter_mut().zip(pixels) {
+                    *byte = copy;
+                }
             }
         }
     }
@@ -306,24 +306,30 @@ impl Painter<'_, '_, '_> {
 
     #[inline(always)]
     fn paint_inner<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
-        let first_row = self.strip * BLOCK_HEIGHT;
+        let covered = |row: usize| mask.get(row).is_some_and(|row| *row != [0; BLOCK_WIDTH]);
         let over = self.look.blend_mode == BlendMode::SourceOver;
         if over && let Source::Solid(color) = self.look.source {
-            for (row, mask) in mask.iter().enumerate().take(self.rows) {
-                if *mask == [0; BLOCK_WIDTH] {
-                    continue;
-                }
-                let pattern = &self.pattern;
-                self.surface.with_row(
-                    first_row + row,
+            let pattern = &self.pattern;
+            if color[3] == 255 {
+                self.surface.for_block(
+                    self.strip,
                     index,
+                    covered,
                     #[inline(always)]
-                    |pixels| {
-                        if color[3] == 255 && *mask == [255; BLOCK_WIDTH] {
-                            *pixels = *pattern;
-                        } else if color[3] == 255 {
-                            over_opaque_row(simd, pixels, color, mask);
-                        } else {
+                    |row, pixels| match mask.get(row) {
+                        Some(&FULL_ROW) => *pixels = *pattern,
+                        Some(mask) => over_opaque_row(simd, pixels, color, mask),
+                        None => {}
+                    },
+                );
+            } else {
+                self.surface.for_block(
+                    self.strip,
+                    index,
+                    covered,
+                    #[inline(always)]
+                    |row, pixels| {
+                        if let Some(mask) = mask.get(row) {
                             over_solid_row(simd, pixels, color, mask);
                         }
                     },
@@ -352,22 +358,20 @@ impl Painter<'_, '_, '_> {
             self.surface.store(self.strip, index, &pixels);
             return;
         }
-        for (row, (mask, source)) in mask.iter().zip(&source).enumerate().take(self.rows) {
-            if *mask == [0; BLOCK_WIDTH] {
-                continue;
-            }
-            let full = *mask == [255; BLOCK_WIDTH];
-            self.surface.with_row(
-                first_row + row,
-                index,
-                #[inline(always)]
-                |pixels| match (opaque, full) {
+        self.surface.for_block(
+            self.strip,
+            index,
+            covered,
+            #[inline(always)]
+            |row, pixels| {
+                let (Some(mask), Some(source)) = (mask.get(row), source.get(row)) else { return };
+                match (opaque, *mask == FULL_ROW) {
                     (true, true) => *pixels = *source,
                     (true, false) => mix_pixels_row(simd, pixels, source, mask),
                     (false, true) => over_pixels_full(simd, pixels, source),
                     (false, false) => over_pixels_row(simd, pixels, source, mask),
-                },
-            );
-        }
+                }
+            },
+        );
     }
 }

@@ -50,21 +50,39 @@ impl<'a> Surface<'a> {
         self.data.get_mut(base + from.min(to)..base + to).unwrap_or(&mut [])
     }
 
-    /// Applies `f` to the 16 pixels of `row` in block `block`. At the right side, where a row ends inside the
-    /// block, to a copy.
+    /// Applies `f` to each row's number in the strip and its 16 pixels in block `block`, for the rows that `wanted` says
+    /// yes to. At the right side, where rows end inside the block, to a copy.
     #[inline(always)]
-    pub(super) fn with_row(&mut self, row: usize, block: usize, f: impl FnOnce(&mut [u8; ROW_BYTES])) {
-        let slice = self.row(row, block, block + 1);
-        if let Some(pixels) = slice.first_chunk_mut::<ROW_BYTES>() {
-            f(pixels);
-        } else {
-            let mut pixels = [0; ROW_BYTES];
-            for (copy, byte) in pixels.iter_mut().zip(slice.iter()) {
-                *copy = *byte;
+    pub(super) fn for_block(
+        &mut self,
+        strip: usize,
+        block: usize,
+        wanted: impl Fn(usize) -> bool,
+        mut f: impl FnMut(usize, &mut [u8; ROW_BYTES]),
+    ) {
+        let rows = self.strip_rows(strip);
+        let from = block.saturating_sub(self.first_block) * ROW_BYTES;
+        let cut = from + ROW_BYTES > self.row_bytes;
+        let end = if cut { self.row_bytes.max(from) } else { from + ROW_BYTES };
+        let lines = self.data.get_mut(strip * BLOCK_HEIGHT * self.stride..).unwrap_or(&mut []);
+        for (row, line) in lines.chunks_mut(self.stride.max(1)).take(rows).enumerate() {
+            if !wanted(row) {
+                continue;
             }
-            f(&mut pixels);
-            for (byte, copy) in slice.iter_mut().zip(pixels) {
-                *byte = copy;
+            let Some(slice) = line.get_mut(from..end) else { break };
+            // One place that calls `f`, which is long.
+            let mut copy = [0; ROW_BYTES];
+            if cut {
+                for (copy, byte) in copy.iter_mut().zip(slice.iter()) {
+                    *copy = *byte;
+                }
+            }
+            let pixels = slice.first_chunk_mut::<ROW_BYTES>();
+            f(row, pixels.unwrap_or(&mut copy));
+            if cut {
+                for (byte, copy) in slice.iter_mut().zip(copy) {
+                    *byte = copy;
+                }
             }
         }
     }
@@ -72,34 +90,34 @@ impl<'a> Surface<'a> {
     /// A copy of a block; pixels that do not exist are transparent.
     #[inline(always)]
     pub(super) fn load(&mut self, strip: usize, block: usize) -> PixelBlock {
-        let mut pixels = [[0; ROW_BYTES]; BLOCK_HEIGHT];
-        let rows = self.strip_rows(strip);
-        for (row, out) in pixels.iter_mut().enumerate().take(rows) {
-            let slice = self.row(strip * BLOCK_HEIGHT + row, block, block + 1);
-            if let Some(whole) = slice.first_chunk::<ROW_BYTES>() {
-                *out = *whole;
-            } else {
-                for (out, byte) in out.iter_mut().zip(slice.iter()) {
-                    *out = *byte;
+        let mut copy = [[0; ROW_BYTES]; BLOCK_HEIGHT];
+        self.for_block(
+            strip,
+            block,
+            |_| true,
+            #[inline(always)]
+            |row, pixels| {
+                if let Some(copy) = copy.get_mut(row) {
+                    *copy = *pixels;
                 }
-            }
-        }
-        pixels
+            },
+        );
+        copy
     }
 
     /// Writes a block back.
     #[inline(always)]
     pub(super) fn store(&mut self, strip: usize, block: usize, pixels: &PixelBlock) {
-        let rows = self.strip_rows(strip);
-        for (row, pixels) in pixels.iter().enumerate().take(rows) {
-            let slice = self.row(strip * BLOCK_HEIGHT + row, block, block + 1);
-            if let Some(whole) = slice.first_chunk_mut::<ROW_BYTES>() {
-                *whole = *pixels;
-            } else {
-                for (byte, pixel) in slice.iter_mut().zip(pixels) {
-                    *byte = *pixel;
+        self.for_block(
+            strip,
+            block,
+            |_| true,
+            #[inline(always)]
+            |row, out| {
+                if let Some(pixels) = pixels.get(row) {
+                    *out = *pixels;
                 }
-            }
-        }
+            },
+        );
     }
 }

@@ -1,0 +1,154 @@
+//! Edges of a draw into cells, looked at eight at a time: which way each goes, how steeply, and in which strip and
+//! columns, is found for eight of them at once. Those that stay within one strip, as most of small shapes and of curves
+//! do, are then added straight away; the others take the kernel's general way.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, i32x8};
+
+use super::bins::Edges;
+use super::cell::Accumulator;
+use super::edge::FixedPoint;
+use super::kernel::{PieceLine, Reach, RowParts, STRIP_SHIFT, add_downward, add_row_parts, is_flat};
+use crate::num::fixed;
+use crate::num::lanes::{max_i32, min_i32};
+
+/// Adds edges to the band whose top is at `top` and which has `strips` strips, as
+/// [`add_edge`](super::kernel::add_edge) does one of them.
+#[inline(always)]
+pub(crate) fn add_edges<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    edges: Edges<'_>,
+    top: i32,
+    strips: usize,
+    reaches: &[Reach],
+) {
+    edges.for_eights(
+        #[inline(always)]
+        |from, to, count| {
+            let eight = Eight::new(simd, from, to, top);
+            let all = (1 << count) - 1;
+            let (mut single, mut others) = (eight.single & all, eight.climbs & !eight.single & all);
+            while single != 0 {
+                let lane = single.trailing_zeros() as usize & 7;
+                single &= single - 1;
+                if !add_single(simd, cells, &eight, lane, strips, reaches) {
+                    others |= 1 << lane;
+                }
+            }
+            while others != 0 {
+                let lane = others.trailing_zeros() as usize & 7;
+                others &= others - 1;
+                add_downward::<S, false>(simd, cells, eight.downward(lane, top), top, strips, reaches);
+            }
+        },
+    );
+}
+
+/// Adds an edge that keeps to one strip; false if it is for the general way: flat, or only some of its columns matter.
+#[inline(always)]
+fn add_single<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    eight: &Eight,
+    lane: usize,
+    strips: usize,
+    reaches: &[Reach],
+) -> bool {
+    // Of edges above the band the strip is negative, which no index is.
+    let strip = (eight.start_y[lane] >> STRIP_SHIFT) as usize;
+    if strip >= strips {
+        return true;
+    }
+    let (least, greatest) = (eight.least[lane], eight.greatest[lane]);
+    let (first, last) = ((least >> fixed::SHIFT) as usize, (greatest >> fixed::SHIFT) as usize);
+    if let Some(reach) = reaches.get(strip) {
+        if reach.ends_before(least) {
+            return true;
+        }
+        if !reach.holds(least, greatest) {
+            return false;
+        }
+    }
+    if is_flat(first, last, eight.height[lane] as f32) {
+        return false;
+    }
+    if let Some(strip) = cells.strip(strip) {
+        let line = PieceLine {
+            below: eight.start_y[lane] & ((1 << STRIP_SHIFT) - 1),
+            height: eight.height[lane],
+            start: eight.start[lane],
+            slope: eight.slope[lane],
+            steep: eight.steep[lane],
+            winding: eight.winding[lane],
+        };
+        add_row_parts(simd, strip, RowParts::of(simd, line), first, last);
+    }
+    true
+}
+
+/// What there is to know of eight edges: each array has a lane for each.
+struct Eight {
+    /// Which of them are not horizontal, as bits, and which of these lie within one strip.
+    climbs: u32,
+    single: u32,
+    /// Where they start, downwards; y from the band's top.
+    start_x: [i32; 8],
+    start_y: [i32; 8],
+    end_x: [i32; 8],
+    height: [i32; 8],
+    /// As a [`PieceLine`] has them.
+    start: [f32; 8],
+    slope: [f32; 8],
+    steep: [f32; 8],
+    winding: [i32; 8],
+    /// The least and the greatest x.
+    least: [i32; 8],
+    greatest: [i32; 8],
+}
+
+impl Eight {
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, from: &[FixedPoint; 8], to: &[FixedPoint; 8], top: i32) -> Self {
+        let ((from_x, from_y), (to_x, to_y)) = (coordinates(simd, from), coordinates(simd, to));
+        let down = from_y.simd_lt(to_y);
+        let (start_x, end_x) = (down.select(from_x, to_x), down.select(to_x, from_x));
+        let (start_y, end_y) = (min_i32(from_y, to_y) - top, max_i32(from_y, to_y) - top);
+        let winding = down.select(i32x8::splat(simd, 1), i32x8::splat(simd, -1));
+        let (least, greatest) = (min_i32(from_x, to_x), max_i32(from_x, to_x));
+        let height = end_y - start_y;
+        let one_strip = (start_y >> STRIP_SHIFT).simd_eq((end_y - 1) >> STRIP_SHIFT);
+        let climbs = height.simd_gt(0);
+        let (run, rise) = ((end_x - start_x).to_float::<f32x8<S>>(), height.to_float::<f32x8<S>>());
+        let zero = f32x8::splat(simd, 0.0);
+        let steep = rise * winding.to_float::<f32x8<S>>() / run.abs();
+        Self {
+            climbs: climbs.to_bitmask() as u32,
+            single: (climbs & one_strip).to_bitmask() as u32,
+            start_x: start_x.to_array(),
+            start_y: start_y.to_array(),
+            end_x: end_x.to_array(),
+            height: height.to_array(),
+            start: (start_x - ((least >> fixed::SHIFT) << fixed::SHIFT)).to_float::<f32x8<S>>().to_array(),
+            slope: (run / rise).to_array(),
+            steep: run.simd_eq(zero).select(zero, steep).to_array(),
+            winding: winding.to_array(),
+            least: least.to_array(),
+            greatest: greatest.to_array(),
+        }
+    }
+
+    /// An edge as [`Edge::downward`](super::edge::Edge::downward) gives it.
+    #[inline(always)]
+    fn downward(&self, lane: usize, top: i32) -> (i32, i32, i32, i32, i32) {
+        let y = self.start_y[lane] + top;
+        (self.start_x[lane], y, self.end_x[lane], y + self.height[lane], self.winding[lane])
+    }
+}
+
+/// x and y of eight points.
+#[inline(always)]
+fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; 8]) -> (i32x8<S>, i32x8<S>) {
+    let [low, high]: [[i32; 8]; 2] = bytemuck::cast(*points);
+    i32x8::load_array(simd, low).deinterleave(i32x8::load_array(simd, high))
+}
