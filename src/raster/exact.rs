@@ -9,8 +9,8 @@
 //! 1. Touched pixels side by side in a row, one of them twice, are a *cluster* ([`find_clusters`]). The pixel left of it
 //!    is touched by no edge, so that its sum is the winding along the whole of the cluster's left side.
 //! 2. The parts of edges that lie in clusters are gathered ([`gather`]), and each cluster is walked from left to right.
-//! 3. A pixel is cut where parts begin or end in it into slabs ([`Slabs`]); in each slab eight or more scanlines, lanes of
-//!    a vector, are followed from crossing to crossing, and what of them is inside by the rule is added up.
+//! 3. A pixel is cut where parts begin or end in it into slabs ([`Slabs`]); eight or more scanlines, lanes of a vector, are
+//!    shared out among the slabs and followed from crossing to crossing, and what of them is inside is added up.
 //! 4. The cells of the pixel and of its right neighbour are changed so that the sweep finds that value.
 
 use fearless_simd::prelude::*;
@@ -21,22 +21,24 @@ use super::edge::Edge;
 use super::kernel::{CROWD, RowParts, STRIP_SHIFT, add_edge, for_strip_parts};
 use super::sample::inside;
 use crate::num::fixed;
-use crate::num::lanes::{max_f32, min_f32};
+use crate::num::lanes::{greater_f32, lesser_f32};
 use crate::style::FillRule;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
-/// Pixels with more parts than this along one scanline are resolved scanline by scanline.
-const MOST_CROSSINGS: usize = 12;
+/// Pixels with more parts than this are resolved scanline by scanline.
+const MOST_CROSSINGS: usize = 16;
 /// In rows whose parts touch more pixels than this, counted for each, summed areas stay: at such density, which of them
 /// are inside no longer shows, and a row's cost stays within bounds.
 const MOST_TOUCHES: usize = 1 << 14;
 /// Pixels cut into more slabs than this are cut evenly instead.
 const MOST_SLABS: usize = 12;
 const EVEN_SLABS: i32 = 8;
-/// Parts that run over more pixels than this per row sweep a pixel between two of eight scanlines: slabs are then cut
-/// finer.
+/// x of what winds around a pixel's left side: left of all that is in the pixel.
+const FAR_LEFT: f32 = 1e9;
+/// A pixel is seen along so many scanlines at most: where parts run over more pixels than [`FLAT`] per row, since they
+/// sweep it between two of fewer.
+const MOST_SCANLINES: usize = 32;
 const FLAT: f32 = 2.0;
-const FINER: usize = 4;
 
 /// Working memory.
 #[derive(Debug, Default)]
@@ -123,12 +125,19 @@ impl Part {
     }
 }
 
-/// Adds the edges of a shape, which go on from `before`, and notes which pixels they touch once and more often. Horizontal ones add nothing,
-/// but touch pixels as well: windings change at them.
+/// Where the edges added so far end.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Trail {
+    before: Option<Edge>,
+    chain: Option<Chain>,
+}
+
+/// Adds the edges of a shape, which go on from `trail`, and notes which pixels they touch once and more often. Horizontal
+/// ones add nothing, but touch pixels as well: windings change at them.
 ///
 /// The pixel in which an edge starts where the one before it ended is not touched twice by that: along each scanline
-/// either one of them is crossed, or both, one way and the other, and the sum of their areas is right by any fill rule. But
-/// of three edges in one pixel the first and the third may cross, unless all go up or all down.
+/// either one of them is crossed, or both, one way and the other, and the sum of their areas is right by any fill rule. So
+/// it is with more that follow each other in one pixel, as long as none crosses another: see [`Chain`].
 #[inline(always)]
 pub(crate) fn add_touching_edges<S: Simd>(
     simd: S,
@@ -136,23 +145,24 @@ pub(crate) fn add_touching_edges<S: Simd>(
     edges: &[Edge],
     top: i32,
     strips: usize,
-    mut before: Option<Edge>,
+    trail: &mut Trail,
 ) {
     cells.keep_marks();
-    let mut last_joint: Option<(BandPixel, bool)> = None;
+    let Trail { before, chain } = trail;
     for edge in edges {
         if edge.y0 == edge.y1 {
             touch_horizontally(cells, edge, top);
-            before = None;
+            *before = None;
             continue;
         }
         let joint = before.filter(|before| before.meets(*edge)).and_then(|before| {
             let pixel = pixel_within(edge.x0, edge.y0 - top)?;
-            let turns = !before.goes_on_with(*edge);
-            let same = last_joint.filter(|(last, _)| *last == pixel);
-            let single = same.is_none_or(|(_, turned)| !turned && !turns);
-            last_joint = Some((pixel, turns || same.is_some_and(|(_, turned)| turned)));
-            single.then_some(pixel)
+            let extended = match chain.take().filter(|chain| chain.pixel == pixel) {
+                Some(chain) => chain.extend(before, *edge),
+                None => Chain::new(pixel, before, *edge),
+            };
+            *chain = Some(extended);
+            extended.is_simple().then_some(pixel)
         });
         let old = joint.and_then(|pixel| Some((pixel, *cells.marks(pixel)?)));
         add_edge::<S, true>(simd, cells, *edge, top, strips, &[]);
@@ -163,7 +173,50 @@ pub(crate) fn add_touching_edges<S: Simd>(
             marks.once = marks.once & !row | old.once & row;
             marks.twice = marks.twice & !row | old.twice & row;
         }
-        before = Some(*edge);
+        *before = Some(*edge);
+    }
+}
+
+/// Edges that follow each other, all joints in one pixel.
+///
+/// None crosses another if all go up or all down, or if they turn one way and by less than half a turn in all: a scanline
+/// then crosses one of them, or two that wind against each other.
+#[derive(Clone, Copy)]
+struct Chain {
+    pixel: BandPixel,
+    /// Its first edge.
+    first: Edge,
+    /// Whether all go up or all down.
+    monotone: bool,
+    /// Whether they turn one way: which, or 0 as long as they go straight on.
+    convex: bool,
+    turn: i64,
+}
+
+impl Chain {
+    /// Two edges that meet in `pixel`.
+    #[inline(always)]
+    fn new(pixel: BandPixel, first: Edge, second: Edge) -> Self {
+        let monotone = first.goes_on_with(second);
+        let turn = first.turn_to(second);
+        // Straight back is no turn to either side.
+        Self { pixel, first, monotone, convex: turn != 0 || monotone, turn }
+    }
+
+    /// With one edge more, after `before`.
+    #[inline(always)]
+    fn extend(self, before: Edge, next: Edge) -> Self {
+        let goes_on = before.goes_on_with(next);
+        let turn = before.turn_to(next);
+        let one_way = if turn == 0 { goes_on } else { self.turn == 0 || self.turn == turn };
+        let turn = if self.turn == 0 { turn } else { self.turn };
+        let convex = self.convex && one_way && (self.first.turn_to(next) == turn);
+        Self { monotone: self.monotone && goes_on, convex, turn, ..self }
+    }
+
+    #[inline(always)]
+    fn is_simple(self) -> bool {
+        self.monotone || self.convex
     }
 }
 
@@ -178,10 +231,9 @@ pub(crate) fn add_touching_crowd<S: Simd>(
     strips: usize,
     rule: FillRule,
 ) {
-    let mut before = None;
+    let mut trail = Trail::default();
     for crowd in edges.chunks(CROWD - 1) {
-        add_touching_edges(simd, cells, crowd, top, strips, before);
-        before = crowd.last().copied();
+        add_touching_edges(simd, cells, crowd, top, strips, &mut trail);
         cells.set_aside();
     }
     cells.bring_back(rule);
@@ -427,6 +479,7 @@ struct Window {
     /// The winding at the top of the pixel's left side, and how it changes further down: (y, difference).
     winding: i32,
     changes: Vec<(i32, i32)>,
+    sides: Sides,
     slabs: Slabs,
     /// Of one scanline: where it is crossed, and by what winding.
     crossings: Vec<(f32, i32)>,
@@ -473,9 +526,9 @@ impl Window {
     }
 
     /// Whether the sum of areas is right all the same: where the rule is linear between the lowest and the highest winding
-    /// that the pixel can have, or where two parts that wind against each other run side by side.
+    /// that the pixel can have, or along every scanline, since [`Sides`] says so.
     #[inline(always)]
-    fn is_summed(&self, rule: FillRule) -> bool {
+    fn is_summed(&mut self, rule: FillRule) -> bool {
         let (mut low, mut high) = (self.winding, self.winding);
         for winding in self.changes.iter().map(|(_, sum)| *sum).chain(self.parts.iter().map(|part| part.winding)) {
             if winding < 0 {
@@ -491,19 +544,100 @@ impl Window {
         if is_linear {
             return true;
         }
-        let [a, b] = &self.parts[..] else { return false };
-        let side = |y: i32| (a.x - b.x) + ((a.base - b.base) * fixed::ONE) as f32 + (a.slope - b.slope) * y as f32;
-        self.changes.is_empty()
-            && a.winding == -b.winding
-            && (a.y0, a.y1) == (b.y0, b.y1)
-            && side(a.y0) * side(a.y1) >= 0.0
+        // The commonest case, and where two lines cross, answered at once.
+        if let [a, b] = &self.parts[..]
+            && self.changes.is_empty()
+        {
+            let (one, other) = (std::slice::from_ref(a), std::slice::from_ref(b));
+            return a.winding == -b.winding
+                && a.winding.abs() == 1
+                && self.winding.abs() <= 1
+                && (is_behind(one, other) || is_behind(other, one));
+        }
+        self.sides.are_in_order(self.winding, &self.parts, &mut self.changes)
     }
 }
 
-/// The heights between which nothing begins or ends, in 1/256 pixel.
+/// The parts in a pixel, those that wind one way and those that wind the other.
+#[derive(Debug, Default)]
+struct Sides {
+    right: Vec<Part>,
+    left: Vec<Part>,
+}
+
+impl Sides {
+    /// Whether every scanline crosses nothing, or one part of one kind, or one of that kind and right of it one that winds
+    /// against it: windings are then w and w ± 1 throughout, and always the same sign of the two.
+    #[inline(never)]
+    fn are_in_order(&mut self, winding: i32, parts: &[Part], changes: &mut [(i32, i32)]) -> bool {
+        const MOST: usize = 8;
+        if parts.len() + changes.len() > MOST || winding.abs() > 1 {
+            return false;
+        }
+        self.right.clear();
+        self.left.clear();
+        // What winds around the pixel's left side from one height to another is a part there.
+        changes.sort_unstable();
+        let mut around = 0;
+        for (index, (y0, change)) in changes.iter().enumerate() {
+            around += change;
+            let y1 = changes.get(index + 1).map_or(fixed::ONE, |(y, _)| *y);
+            let x = -FAR_LEFT;
+            let part = Part { first: 0, last: 0, x, base: 0, slope: 0.0, y0: *y0, y1, winding: around };
+            match around {
+                0 => {}
+                1 => self.right.push(part),
+                -1 => self.left.push(part),
+                _ => return false,
+            }
+        }
+        for part in parts {
+            match part.winding {
+                1 => self.right.push(*part),
+                -1 => self.left.push(*part),
+                _ => return false,
+            }
+        }
+        is_behind(&self.left, &self.right) || is_behind(&self.right, &self.left)
+    }
+}
+
+/// Whether, on every scanline that crosses one of `second`, one of `first` is crossed left of it, and never two of a kind.
+fn is_behind(second: &[Part], first: &[Part]) -> bool {
+    let common = |a: &Part, b: &Part| {
+        let (top, bottom) = (if a.y0 > b.y0 { a.y0 } else { b.y0 }, if a.y1 < b.y1 { a.y1 } else { b.y1 });
+        (top < bottom).then_some((top, bottom))
+    };
+    let single = |parts: &[Part]| {
+        let others = |index: usize| parts.get(index + 1..).unwrap_or(&[]);
+        parts.iter().enumerate().all(|(index, a)| others(index).iter().all(|b| common(a, b).is_none()))
+    };
+    single(first)
+        && single(second)
+        && second.iter().all(|part| {
+            let mut met = 0;
+            for before in first {
+                let Some((top, bottom)) = common(before, part) else { continue };
+                let apart = |y: i32| {
+                    let bases = ((before.base - part.base) * fixed::ONE) as f32;
+                    (before.x - part.x) + bases + (before.slope - part.slope) * y as f32
+                };
+                if apart(top) > 0.0 || apart(bottom) > 0.0 {
+                    return false;
+                }
+                met += bottom - top;
+            }
+            met == part.y1 - part.y0
+        })
+}
+
+/// The heights between which nothing begins or ends, in 1/256 pixel, and scanlines between them.
 #[derive(Debug, Default)]
 struct Slabs {
     cuts: Vec<i32>,
+    y: [f32; MOST_SCANLINES],
+    /// How much of the pixel's height each scanline stands for.
+    heights: [f32; MOST_SCANLINES],
 }
 
 impl Slabs {
@@ -522,6 +656,32 @@ impl Slabs {
             }
         }
         self.cuts.sort_unstable();
+    }
+
+    /// Gives each slab one scanline and more by its height, in the middles of equal parts; says in how many eights they are.
+    fn place_scanlines(&mut self, is_flat: bool) -> usize {
+        let slabs = self.cuts.len() as i32 - 1;
+        let eights = match slabs {
+            _ if is_flat => MOST_SCANLINES / 8,
+            0..=3 => 1,
+            _ => 2,
+        };
+        let spare = 8 * eights as i32 - slabs;
+        let mut lanes = self.y.iter_mut().zip(&mut self.heights).take(8 * eights);
+        for pair in self.cuts.windows(2) {
+            let [top, bottom] = *pair else { break };
+            let lines = 1 + (spare * (bottom - top)) / fixed::ONE;
+            let height = (bottom - top) as f32 / lines as f32;
+            let mut middle = top as f32 + 0.5 * height;
+            for (y, part) in lanes.by_ref().take(lines as usize) {
+                (*y, *part) = (middle, height);
+                middle += height;
+            }
+        }
+        for (_, part) in lanes {
+            *part = 0.0;
+        }
+        eights
     }
 }
 
@@ -566,75 +726,82 @@ fn resolve_row<S: Simd>(simd: S, columns: &mut [Column], index: usize, row: &Row
     }
 }
 
-/// The covered area of the pixel in `column`, in 1/[`FULL`]; `None` if too many parts cross a scanline.
+/// The covered area of the pixel in `column`, in 1/[`FULL`]; `None` if too many parts lie in it.
+///
+/// Scanlines are lanes; each slab gets some, all of it together at most [`MOST_SCANLINES`]. Between crossings, the middle of
+/// what a scanline stands for is exact.
 #[inline(always)]
 fn coverage<S: Simd, const EVEN_ODD: bool>(simd: S, window: &mut Window, column: i32) -> Option<i32> {
     let Window { parts, winding, changes, slabs, .. } = window;
+    if parts.len() > MOST_CROSSINGS {
+        return None;
+    }
     slabs.cut(parts, changes);
     let is_flat = parts.iter().any(|part| part.slope.abs() > FLAT);
-    let finer = if is_flat { FINER } else { 1 };
+    let eights = slabs.place_scanlines(is_flat);
+    let mut area = f32x8::splat(simd, 0.0);
+    for (y, height) in slabs.y.as_chunks::<8>().0.iter().zip(slabs.heights.as_chunks::<8>().0).take(eights) {
+        let y = f32x8::load_array_ref(simd, y);
+        let mut around = i32x8::splat(simd, *winding);
+        for (from, change) in changes.iter() {
+            around += y.simd_gt(*from as f32).select(i32x8::splat(simd, *change), i32x8::splat(simd, 0));
+        }
+        // Few crossings stay in registers.
+        let inside = match parts.len() {
+            0..=2 => inside_along::<S, EVEN_ODD, 2>(simd, y, around, parts, column),
+            3..=4 => inside_along::<S, EVEN_ODD, 4>(simd, y, around, parts, column),
+            _ => inside_along::<S, EVEN_ODD, MOST_CROSSINGS>(simd, y, around, parts, column),
+        };
+        area += inside * f32x8::load_array_ref(simd, height);
+    }
+    let [a, b, c, d, e, f, g, h] = area.to_array();
+    let area = ((a + e) + (c + g)) + ((b + f) + (d + h));
+    Some((area * (FULL as f32 / 65_536.0) + 0.5) as i32)
+}
+
+/// How much of eight scanlines of the pixel in `column`, in 1/256 of its width, is inside; `parts` are at most `N`, and
+/// `around` is the winding along the pixel's left side.
+#[inline(always)]
+fn inside_along<S: Simd, const EVEN_ODD: bool, const N: usize>(
+    simd: S,
+    y: f32x8<S>,
+    mut around: i32x8<S>,
+    parts: &[Part],
+    column: i32,
+) -> f32x8<S> {
     let zero = f32x8::splat(simd, 0.0);
     let side = f32x8::splat(simd, 256.0);
-    // The middles of eight equal parts.
-    let middles = f32x8::simd_from(simd, [0.0625, 0.1875, 0.3125, 0.4375, 0.5625, 0.6875, 0.8125, 0.9375]);
+    let nothing = i32x8::splat(simd, 0);
     let is_inside = |around: i32x8<S>| {
         let residue = if EVEN_ODD { around & 1 } else { around };
-        residue.simd_eq(i32x8::splat(simd, 0))
+        residue.simd_eq(nothing)
     };
-    let mut area = 0.0;
-    for pair in slabs.cuts.windows(2) {
-        let [top, bottom] = *pair else { break };
-        let middle = top + (bottom - top) / 2;
-        let around = *winding + changes.iter().map(|(y, sum)| if *y <= middle { *sum } else { 0 }).sum::<i32>();
-        let mut height = (bottom - top) as f32;
-        let mut start = top as f32;
-        let finer = if bottom - top > 8 { finer } else { 1 };
-        height /= finer as f32;
-        for _ in 0..finer {
-            let y = middles * height + start;
-            start += height;
-            // Where the scanlines are crossed, in order, and by what winding: each new crossing sinks to its place.
-            let mut places = [side; MOST_CROSSINGS];
-            let mut windings = [i32x8::splat(simd, 0); MOST_CROSSINGS];
-            let mut count = 0;
-            for part in parts.iter() {
-                if part.y0 > middle || middle >= part.y1 {
-                    continue;
-                }
-                if count == MOST_CROSSINGS {
-                    return None;
-                }
-                let offset = part.x + ((part.base - column) * fixed::ONE) as f32;
-                let mut place = min_f32(max_f32(y * part.slope + offset, zero), side);
-                let mut crossing = i32x8::splat(simd, part.winding);
-                for (other, winding) in places.iter_mut().zip(&mut windings).take(count) {
-                    let before = place.simd_lt(*other);
-                    let (p, w) = (before.select(*other, place), before.select(*winding, crossing));
-                    (*other, *winding) = (before.select(place, *other), before.select(crossing, *winding));
-                    (place, crossing) = (p, w);
-                }
-                if let (Some(other), Some(winding)) = (places.get_mut(count), windings.get_mut(count)) {
-                    (*other, *winding) = (place, crossing);
-                }
-                count += 1;
-            }
-            let mut around = i32x8::splat(simd, around);
-            let (mut inside, mut at) = (zero, zero);
-            for (place, winding) in places.iter().zip(&windings).take(count) {
-                inside += is_inside(around).select(zero, *place - at);
-                around += *winding;
-                at = *place;
-            }
-            inside += is_inside(around).select(zero, side - at);
-            let mut sum = 0.0;
-            for lane in inside.to_array() {
-                sum += lane;
-            }
-            area += sum * height;
+    // Where the scanlines are crossed, in order, and by what winding: each new crossing sinks to its place.
+    let mut places = [side; N];
+    let mut windings = [nothing; N];
+    for (count, part) in parts.iter().take(N).enumerate() {
+        let offset = part.x + ((part.base - column) * fixed::ONE) as f32;
+        let crosses = y.simd_gt(part.y0 as f32) & y.simd_lt(part.y1 as f32);
+        let place = lesser_f32(greater_f32(y * part.slope + offset, zero), side);
+        let mut place = crosses.select(place, side);
+        let mut crossing = crosses.select(i32x8::splat(simd, part.winding), nothing);
+        for (other, winding) in places.iter_mut().zip(&mut windings).take(count) {
+            let before = place.simd_lt(*other);
+            let (p, w) = (before.select(*other, place), before.select(*winding, crossing));
+            (*other, *winding) = (before.select(place, *other), before.select(crossing, *winding));
+            (place, crossing) = (p, w);
+        }
+        if let (Some(other), Some(winding)) = (places.get_mut(count), windings.get_mut(count)) {
+            (*other, *winding) = (place, crossing);
         }
     }
-    // Of eight lanes, 256 wide and 256 high in all.
-    Some((area * (FULL as f32 / (8.0 * 65_536.0)) + 0.5) as i32)
+    let (mut inside, mut at) = (zero, zero);
+    for (place, winding) in places.iter().zip(&windings).take(parts.len()) {
+        inside += is_inside(around).select(zero, *place - at);
+        around += *winding;
+        at = *place;
+    }
+    inside + is_inside(around).select(zero, side - at)
 }
 
 /// The covered area of a pixel with any number of parts, in 1/[`FULL`].
@@ -676,7 +843,7 @@ mod tests {
         let next = points.iter().cycle().skip(1);
         let edges: Vec<Edge> =
             points.iter().zip(next).map(|(a, b)| Edge { x0: a.0, y0: a.1, x1: b.0, y1: b.1 }).collect();
-        dispatch!(SimdLevel::best(), simd => add_touching_edges(simd, &mut cells, &edges, 0, 4, None));
+        dispatch!(SimdLevel::best(), simd => add_touching_edges(simd, &mut cells, &edges, 0, 4, &mut Trail::default()));
         let mut found = Vec::new();
         for strip in 0..4 {
             for (column, marks) in cells.strip(strip).unwrap().marks.iter().enumerate() {

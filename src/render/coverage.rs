@@ -123,7 +123,8 @@ fn accumulate_inner<S: Simd>(
             if edges.len() >= kernel::CROWD {
                 exact::add_touching_crowd(simd, &mut scratch.cells, edges, top, frame.strips, rule);
             } else {
-                exact::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips, None);
+                let trail = &mut exact::Trail::default();
+                exact::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips, trail);
             }
             for strip in 0..frame.strips {
                 let Some(cells) = scratch.cells.strip(strip) else { break };
