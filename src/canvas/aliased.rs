@@ -119,7 +119,8 @@ impl Canvas<'_> {
                 Segment::Close => (Verb::LineTo, vec![last, start]),
             };
             dispatch!(SimdLevel::best(), simd => {
-                flatten_fill(simd, &[Verb::MoveTo, verb], &points, transform, &mut chain);
+                let placed: Vec<Point> = points.iter().map(|p| transform.map(*p)).collect();
+                flatten_fill(simd, &[Verb::MoveTo, verb], &placed, &mut chain);
             });
             last = points.last().copied().unwrap_or(last);
         }

@@ -349,7 +349,7 @@ impl Canvas<'_> {
         if !transform.is_finite() {
             return None;
         }
-        let scale = transform.scale_range().0;
+        let scale = if reach > 0.0 { transform.scale_range().0 } else { 1.0 };
         let margin = if scale > 1.0 { reach * scale } else { reach };
         let device = transform.map_rect(path.control_bounds()?)?;
         // One pixel more: flattening and 24.8 rounding move points by less.

@@ -124,8 +124,12 @@ impl Rect {
             return IntRect::EMPTY;
         }
         let limit = 1_073_741_824.0_f32;
-        let low = |v: f32| v.floor().clamp(-limit, limit) as i32;
-        let high = |v: f32| v.ceil().clamp(-limit, limit) as i32;
+        // Without the instruction set for it, `floor` and `ceil` are calls.
+        let low = |v: f32| {
+            let v = v.clamp(-limit, limit);
+            v as i32 - i32::from((v as i32) as f32 > v)
+        };
+        let high = |v: f32| -low(-v);
         IntRect { left: low(self.left), top: low(self.top), right: high(self.right), bottom: high(self.bottom) }
     }
 }

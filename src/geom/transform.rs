@@ -121,6 +121,12 @@ impl Transform {
 
     /// The bounding box of the rectangle's image; `None` if it is not finite.
     pub fn map_rect(self, rect: Rect) -> Option<Rect> {
+        if self.kx == 0.0 && self.ky == 0.0 {
+            // Two corners say it all.
+            let (a, b) = (self.map(Point::new(rect.left, rect.top)), self.map(Point::new(rect.right, rect.bottom)));
+            let mapped = Rect::from_ltrb(a.x, a.y, b.x, b.y);
+            return mapped.is_finite().then(|| mapped.normalized());
+        }
         Rect::from_points(&rect.corners().map(|p| self.map(p)))
     }
 

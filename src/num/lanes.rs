@@ -67,13 +67,16 @@ pub(crate) fn truncate_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
     v.to_int()
 }
 
-/// The nearest integer, ties to even, of lanes within ±2^22.
+/// What [`round_raised_f32`] adds.
+pub(crate) const RAISED: i32 = 0x4b40_0000;
+
+/// The nearest integer, ties to even, of lanes within ±2^22, plus [`RAISED`].
 ///
-/// Adding 1.5 · 2^23 leaves the rounded integer in the low bits of the mantissa: one addition and one
-/// subtraction at every level, where a native rounding instruction is missing from some.
+/// Adding 1.5 · 2^23 leaves the rounded integer in the low bits of the mantissa: one addition at every level, where a
+/// native rounding instruction is missing from some. In differences, what was added is lost.
 #[inline(always)]
-pub(crate) fn round_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
-    (v + 12_582_912.0).bitcast::<i32x8<S>>() - 0x4b40_0000
+pub(crate) fn round_raised_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
+    (v + 12_582_912.0).bitcast()
 }
 
 #[cfg(test)]

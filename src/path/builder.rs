@@ -1,5 +1,7 @@
 //! The path and its elementary segments.
 
+use std::sync::OnceLock;
+
 use crate::geom::{Point, Rect, Transform};
 
 /// What a path does next.
@@ -45,6 +47,18 @@ pub struct Path {
     points: Vec<Point>,
     /// Where the current subpath started.
     start: Point,
+    bounds: KeptBounds,
+}
+
+/// The bounds of a path's points, once somebody asked: a path is often drawn more than once. It says nothing new
+/// of the path, and so does not count when paths are compared.
+#[derive(Clone, Debug, Default)]
+struct KeptBounds(OnceLock<Option<Rect>>);
+
+impl PartialEq for KeptBounds {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl Path {
@@ -63,6 +77,7 @@ impl Path {
         self.verbs.clear();
         self.points.clear();
         self.start = Point::ZERO;
+        self.bounds = KeptBounds::default();
     }
 
     /// The verbs in order; each takes 1, 1, 2, 3 or 0 of [`Path::points`].
@@ -79,6 +94,7 @@ impl Path {
     pub fn move_to(&mut self, p: impl Into<Point>) -> &mut Self {
         let p = p.into();
         self.start = p;
+        self.bounds.0.take();
         if let (Some(Verb::MoveTo), Some(last)) = (self.verbs.last(), self.points.last_mut()) {
             *last = p;
         } else {
@@ -92,6 +108,7 @@ impl Path {
     pub fn line_to(&mut self, p: impl Into<Point>) -> &mut Self {
         let p = p.into();
         self.ensure_subpath(p);
+        self.bounds.0.take();
         self.verbs.push(Verb::LineTo);
         self.points.push(p);
         self
@@ -101,6 +118,7 @@ impl Path {
     pub fn quad_to(&mut self, c: impl Into<Point>, p: impl Into<Point>) -> &mut Self {
         let (c, p) = (c.into(), p.into());
         self.ensure_subpath(c);
+        self.bounds.0.take();
         self.verbs.push(Verb::QuadTo);
         self.points.extend([c, p]);
         self
@@ -110,6 +128,7 @@ impl Path {
     pub fn cubic_to(&mut self, c1: impl Into<Point>, c2: impl Into<Point>, p: impl Into<Point>) -> &mut Self {
         let (c1, c2, p) = (c1.into(), c2.into(), p.into());
         self.ensure_subpath(c1);
+        self.bounds.0.take();
         self.verbs.push(Verb::CubicTo);
         self.points.extend([c1, c2, p]);
         self
@@ -134,6 +153,7 @@ impl Path {
 
     /// Appends all segments of `other`, mapped by `transform`.
     pub fn extend(&mut self, other: &Path, transform: Transform) -> &mut Self {
+        self.bounds.0.take();
         self.verbs.extend_from_slice(&other.verbs);
         self.points.extend(other.points.iter().map(|p| transform.map(*p)));
         if !other.is_empty() {
@@ -153,7 +173,7 @@ impl Path {
     /// The bounding box of all points, control points included; `None` for an empty path or one with
     /// a non-finite point.
     pub fn control_bounds(&self) -> Option<Rect> {
-        Rect::from_points(&self.points)
+        *self.bounds.0.get_or_init(|| Rect::from_points(&self.points))
     }
 
     /// The rectangle that filling the path covers, if the path is one rectangle with edges along the axes.

@@ -23,7 +23,6 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
 use super::builder::Verb;
-use crate::geom::Transform;
 
 /// How far, in device pixels, a flattened curve may lie from the true one: an eighth of what makes a
 /// step of coverage visible along a whole pixel, and small against 24.8 rounding after squaring.
@@ -33,7 +32,7 @@ pub(crate) const TOLERANCE: f32 = 0.05;
 /// 100,000 pixels.
 const MAX_PIECES: f32 = 1024.0;
 
-/// Writes a path as closed polygons in device pixels: what filling it covers.
+/// Writes a path, whose points are in device pixels, as closed polygons: what filling it covers.
 ///
 /// Curves are cut at equal parameters into the number of pieces that Wang's formula gives (Wang 1984;
 /// Sederberg, *Computer Aided Geometric Design*, §10.6), eight points at a time; see [`balance`] for where
@@ -43,7 +42,6 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
     simd: S,
     verbs: &[Verb],
     points: &[Point],
-    transform: Transform,
     sink: &mut K,
 ) {
     let mut open = false;
@@ -64,20 +62,20 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
             Verb::MoveTo => {
                 let Some(([p], after)) = rest.split_first_chunk() else { break };
                 rest = after;
-                start = transform.map(*p);
+                start = *p;
                 last = start;
             }
             Verb::Close => last = start,
             Verb::LineTo => {
                 let Some(([p], after)) = rest.split_first_chunk() else { break };
                 rest = after;
-                last = transform.map(*p);
+                last = *p;
                 sink.line(last);
             }
             Verb::QuadTo => {
                 let Some(([c, p], after)) = rest.split_first_chunk() else { break };
                 rest = after;
-                let (c, p) = (transform.map(*c), transform.map(*p));
+                let (c, p) = (*c, *p);
                 let bend = last - c - (c - p);
                 // |second derivative| / 8 / tolerance, for n² pieces.
                 let pieces = piece_count(bend.dot(bend), 0.25 / TOLERANCE);
@@ -89,7 +87,7 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
             Verb::CubicTo => {
                 let Some(([c1, c2, p], after)) = rest.split_first_chunk() else { break };
                 rest = after;
-                let (c1, c2, p) = (transform.map(*c1), transform.map(*c2), transform.map(*p));
+                let (c1, c2, p) = (*c1, *c2, *p);
                 let (bend1, bend2) = (last - c1 - (c1 - c2), c1 - c2 - (c2 - p));
                 let (d1, d2) = (bend1.dot(bend1), bend2.dot(bend2));
                 let pieces = piece_count(if d1 > d2 { d1 } else { d2 }, 0.75 / TOLERANCE);
@@ -198,7 +196,7 @@ mod tests {
     fn flattened(path: &Path) -> Vec<[f64; 2]> {
         let mut sink = Points::default();
         dispatch!(SimdLevel::Scalar, simd => {
-            flatten_fill(simd, path.verbs(), path.points(), Transform::IDENTITY, &mut sink);
+            flatten_fill(simd, path.verbs(), path.points(), &mut sink);
         });
         sink.0.iter().map(|p| [f64::from(p.x), f64::from(p.y)]).collect()
     }

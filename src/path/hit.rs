@@ -93,8 +93,9 @@ impl Path {
     #[must_use]
     pub fn flattened(&self, transform: Transform) -> Self {
         let mut outline = Outline(Self::new());
+        let points: Vec<Point> = self.points().iter().map(|p| transform.map(*p)).collect();
         dispatch!(SimdLevel::best(), simd => {
-            flatten_fill(simd, self.verbs(), self.points(), transform, &mut outline);
+            flatten_fill(simd, self.verbs(), &points, &mut outline);
         });
         outline.0
     }

@@ -19,7 +19,7 @@ use super::bins::Edges;
 use super::cell::{Accumulator, Column, FULL, Marks, Strip};
 use super::edge::{Edge, EdgeLine};
 use crate::num::fixed;
-use crate::num::lanes::{greater_f32, lesser_f32, max_i32, min_i32, round_f32};
+use crate::num::lanes::{RAISED, greater_f32, lesser_f32, max_i32, min_i32, round_raised_f32};
 use crate::style::FillRule;
 use crate::surface::block::BLOCK_HEIGHT;
 
@@ -329,12 +329,12 @@ fn add_two_columns<S: Simd>(simd: S, [here, next, after]: &mut [Column; 3], row:
     let t = greater_f32(lesser_f32(right, side) - left, zero);
     let width = right - left;
     let within = steep * t * t;
-    let area = round_f32(within + beyond * greater_f32(side - right, zero));
+    let area = round_raised_f32(within + beyond * greater_f32(side - right, zero));
     let rest = steep * width * width - within;
-    let next_area = round_f32(rest + beyond * lesser_f32(512.0 - right, side));
-    add_to(simd, here, area);
+    let next_area = round_raised_f32(rest + beyond * lesser_f32(512.0 - right, side));
+    add_to(simd, here, area - RAISED);
     add_to(simd, next, next_area - area);
-    add_to(simd, after, total - next_area);
+    add_to(simd, after, total + RAISED - next_area);
 }
 
 /// Adds parts that lie in all columns but the last.
@@ -343,19 +343,19 @@ fn add_columns<S: Simd>(simd: S, columns: &mut [Column], row: RowParts<S>) {
     let RowParts { left, right, steep, beyond, total, .. } = row;
     let zero = f32x8::splat(simd, 0.0);
     let whole = f32x8::splat(simd, 256.0);
-    let (mut within, mut area) = (zero, i32x8::splat(simd, 0));
+    let (mut within, mut area) = (zero, i32x8::splat(simd, RAISED));
     let mut side = whole;
     let Some((spill, columns)) = columns.split_last_mut() else { return };
     for column in columns {
         let t = greater_f32(lesser_f32(right, side) - left, zero);
         let up_to_here = steep * t * t;
         let right_of = lesser_f32(greater_f32(side - right, zero), whole);
-        let here = round_f32((up_to_here - within) + beyond * right_of);
+        let here = round_raised_f32((up_to_here - within) + beyond * right_of);
         add_to(simd, column, here - area);
         (within, area) = (up_to_here, here);
         side += whole;
     }
-    add_to(simd, spill, total - area);
+    add_to(simd, spill, total + RAISED - area);
 }
 
 impl Strip {

@@ -19,7 +19,8 @@ use crate::style::Antialias;
 #[derive(Debug, Default)]
 pub(crate) struct Chunk {
     bins: EdgeBins,
-    /// The shape in work.
+    /// The shape in work: its outline's points in device space, and what it is flattened to.
+    mapped: Vec<Point>,
     polygons: Polygons,
     stroke: StrokeScratch,
 }
@@ -112,7 +113,14 @@ impl Chunk {
         match geometry {
             Geometry::Fill { verbs, points, transform, .. } => {
                 let (verbs, points) = list.outline(*verbs, *points);
-                flatten_fill(simd, verbs, points, *transform, &mut self.polygons);
+                let points = if transform.is_identity() {
+                    points
+                } else {
+                    self.mapped.clear();
+                    self.mapped.extend(points.iter().map(|p| transform.map(*p)));
+                    &self.mapped
+                };
+                flatten_fill(simd, verbs, points, &mut self.polygons);
             }
             Geometry::Stroke { verbs, points, transform, style } => {
                 let (verbs, points) = list.outline(*verbs, *points);
