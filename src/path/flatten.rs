@@ -38,12 +38,7 @@ const MAX_PIECES: f32 = 1024.0;
 /// Sederberg, *Computer Aided Geometric Design*, §10.6), eight points at a time; see [`balance`] for where
 /// the points lie. Subpaths of a single point are left out.
 #[inline(always)]
-pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
-    simd: S,
-    verbs: &[Verb],
-    points: &[Point],
-    sink: &mut K,
-) {
+pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(simd: S, verbs: &[Verb], points: &[Point], sink: &mut K) {
     let mut open = false;
     let mut start = Point::ZERO;
     let mut last = Point::ZERO;
@@ -78,7 +73,7 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
                 let (c, p) = (*c, *p);
                 let bend = last - c - (c - p);
                 // |second derivative| / 8 / tolerance, for n² pieces.
-                let pieces = piece_count(bend.dot(bend), 0.25 / TOLERANCE);
+                let pieces = piece_count(simd, bend.dot(bend), 0.25 / TOLERANCE);
                 let b = (c - last) * 2.0;
                 let start = last - bend * (2.0 * balance(pieces));
                 polynomial(simd, [Point::ZERO, bend, b, start], pieces, p, sink);
@@ -90,7 +85,7 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
                 let (c1, c2, p) = (*c1, *c2, *p);
                 let (bend1, bend2) = (last - c1 - (c1 - c2), c1 - c2 - (c2 - p));
                 let (d1, d2) = (bend1.dot(bend1), bend2.dot(bend2));
-                let pieces = piece_count(if d1 > d2 { d1 } else { d2 }, 0.75 / TOLERANCE);
+                let pieces = piece_count(simd, if d1 > d2 { d1 } else { d2 }, 0.75 / TOLERANCE);
                 let a = (p - last) - (c2 - c1) * 3.0;
                 let b = bend1 * 3.0;
                 let share = balance(pieces);
@@ -107,20 +102,23 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(
 
 /// ⌈√(factor · √squared)⌉ within 1 ..= [`MAX_PIECES`]; 1 if it is not finite.
 #[inline(always)]
-fn piece_count(squared: f32, factor: f32) -> u32 {
-    // Most curves have few pieces, and comparing fourth powers needs no root.
+fn piece_count<S: Simd>(simd: S, squared: f32, factor: f32) -> u32 {
+    // Comparing fourth powers needs no root, and all of them at once no branch: how many pieces a curve has is hard to
+    // guess.
     let fourth = squared * (factor * factor);
-    if fourth <= 1.0 || !fourth.is_finite() {
-        1
-    } else if fourth <= 16.0 {
-        2
-    } else if fourth <= 81.0 {
-        3
-    } else if fourth <= 256.0 {
-        4
-    } else {
-        let pieces = fourth.sqrt().sqrt();
-        if pieces < MAX_PIECES { pieces as u32 + 1 } else { MAX_PIECES as u32 }
+    let powers = f32x8::simd_from(simd, [1.0, 16.0, 81.0, 256.0, 625.0, 1296.0, 2401.0, 4096.0]);
+    let more = f32x8::splat(simd, fourth).simd_gt(powers).to_bitmask() as u32;
+    if more < 0xff { more.count_ones() + 1 } else { many_pieces(fourth) }
+}
+
+/// As [`piece_count`], of the fourth power of the count, for curves of more than eight.
+#[cold]
+fn many_pieces(fourth: f32) -> u32 {
+    let pieces = fourth.sqrt().sqrt();
+    match pieces {
+        _ if !fourth.is_finite() => 1,
+        _ if pieces < MAX_PIECES => pieces as u32 + 1,
+        _ => MAX_PIECES as u32,
     }
 }
 
@@ -145,6 +143,21 @@ fn balance(pieces: u32) -> f32 {
     FEW.get(pieces as usize).copied().unwrap_or_else(|| balance_share(pieces as f32))
 }
 
+/// 1 / pieces.
+#[inline(always)]
+fn reciprocal(pieces: u32) -> f32 {
+    const FEW: [f32; 17] = {
+        let mut parts = [1.0; 17];
+        let mut pieces = 1;
+        while pieces < 17 {
+            parts[pieces] = 1.0 / pieces as f32;
+            pieces += 1;
+        }
+        parts
+    };
+    FEW.get(pieces as usize).copied().unwrap_or_else(|| 1.0 / pieces as f32)
+}
+
 const fn balance_share(pieces: f32) -> f32 {
     let squares = pieces * pieces;
     if pieces > 2.0 { 1.0 / (12.0 * (squares - pieces)) } else { 0.125 / squares }
@@ -153,22 +166,20 @@ const fn balance_share(pieces: f32) -> f32 {
 /// Writes the points of ((a·t + b)·t + c)·t + d at t = 1/n … (n − 1)/n, and `end`.
 #[inline(always)]
 fn polynomial<S: Simd, K: PolygonSink>(simd: S, [a, b, c, d]: [Point; 4], pieces: u32, end: Point, sink: &mut K) {
-    if pieces == 2 {
-        // The commonest curve of small shapes has one point to compute.
-        let at = |a: f32, b: f32, c: f32, d: f32| ((0.5 * a + b) * 0.5 + c) * 0.5 + d;
-        sink.line(Point::new(at(a.x, b.x, c.x, d.x), at(a.y, b.y, c.y, d.y)));
-    } else if pieces > 2 {
-        let step = 1.0 / pieces as f32;
-        let mut index = 1;
-        while index < pieces {
-            let counts = i32x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]) + index as i32;
-            let t = counts.to_float::<f32x8<S>>() * step;
-            let x = ((t * a.x + b.x) * t + c.x) * t + d.x;
-            let y = ((t * a.y + b.y) * t + c.y) * t + d.y;
-            let (low, high) = x.interleave(y);
-            let points: [Point; 8] = bytemuck::cast([low.to_array(), high.to_array()]);
-            sink.lines(&points, (pieces - index).min(8) as usize);
-            index += 8;
+    let step = reciprocal(pieces);
+    let mut index = 1;
+    loop {
+        let counts = i32x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]) + index as i32;
+        let t = counts.to_float::<f32x8<S>>() * step;
+        let x = ((t * a.x + b.x) * t + c.x) * t + d.x;
+        let y = ((t * a.y + b.y) * t + c.y) * t + d.y;
+        let (low, high) = x.interleave(y);
+        let points: [Point; 8] = bytemuck::cast([low.to_array(), high.to_array()]);
+        // Curves of one piece go this way as well: no point counts then, and there is no branch.
+        sink.lines(&points, (pieces - index).min(8) as usize);
+        index += 8;
+        if index >= pieces {
+            break;
         }
     }
     sink.line(end);
