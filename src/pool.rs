@@ -1,19 +1,28 @@
 //! Jobs on threads.
 
-/// Runs `work` on every job, on up to `threads` threads; returns when all are done.
+/// Runs `work` on every job, on up to `threads` threads, of which the caller's is one; returns when all are done.
 #[cfg(feature = "parallel")]
 pub(crate) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) + Sync) {
-    use rayon::prelude::*;
+    use std::sync::Mutex;
 
-    if threads <= 1 || jobs.len() <= 1 {
-        jobs.into_iter().for_each(work);
-        return;
-    }
-    match pool(threads) {
-        // One job at a time: a band that is slow must not hold back its neighbours.
-        Some(pool) => pool.install(|| jobs.into_par_iter().with_max_len(1).for_each(&work)),
-        None => jobs.into_iter().for_each(work),
-    }
+    let helpers = threads.min(jobs.len()).saturating_sub(1);
+    let pool = if helpers > 0 { pool(threads - 1) } else { None };
+    let Some(pool) = pool else { return jobs.into_iter().for_each(work) };
+    // One job at a time: a band that is slow must not hold back its neighbours. The caller starts at once, and is not
+    // kept waiting by helpers that are still asleep.
+    let queue = Mutex::new(jobs.into_iter());
+    let next = || queue.lock().ok()?.next();
+    let run = || {
+        while let Some(job) = next() {
+            work(job);
+        }
+    };
+    pool.in_place_scope(|scope| {
+        for _ in 0..helpers {
+            scope.spawn(|_| run());
+        }
+        run();
+    });
 }
 
 /// Runs `work` on every job.
