@@ -152,3 +152,54 @@ fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; 8]) -> (i32x8<S>, i32x8<S
     let [low, high]: [[i32; 8]; 2] = bytemuck::cast(*points);
     i32x8::load_array(simd, low).deinterleave(i32x8::load_array(simd, high))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+    use crate::raster::kernel::add_edge;
+
+    #[test]
+    fn eight_edges_add_what_each_of_them_does() {
+        let mut seed = 3_u32;
+        let mut random = |n: i32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as i32 % n
+        };
+        const STRIPS: usize = 3;
+        for case in 0..200 {
+            // Small steps make edges within a strip, large ones those that cross strips or are flat; some are level, and
+            // some lie above or below the band.
+            let step = [200, 900, 9000][case % 3];
+            let mut at = FixedPoint { x: 20 * 256, y: 12 * 256 };
+            let points: Vec<FixedPoint> = (0..70)
+                .map(|_| {
+                    at.x = (at.x + random(2 * step) - step).clamp(0, 40 * 256 - 1);
+                    at.y = (at.y + (random(2 * step) - step) * i32::from(random(5) > 0)).clamp(-3000, 9000);
+                    at
+                })
+                .collect();
+            let starts: Vec<u32> = (0..69).filter(|_| case % 2 == 0 || random(4) > 0).collect();
+            let edges = Edges::of(&points, &starts);
+            let reaches: Vec<Reach> = match case % 4 {
+                0 => Vec::new(),
+                1 => vec![Reach::columns(10, 25), Reach::NOTHING, Reach::columns(0, 16)],
+                _ => vec![Reach::columns(0, 40); 2],
+            };
+            let mut expected = Accumulator::default();
+            expected.resize(40, STRIPS);
+            dispatch!(SimdLevel::Scalar, simd => edges.for_each(
+                |edge| add_edge::<_, false>(simd, &mut expected, edge, 256, STRIPS, &reaches)));
+            for level in SimdLevel::available() {
+                let mut cells = Accumulator::default();
+                cells.resize(40, STRIPS);
+                dispatch!(level, simd => add_edges(simd, &mut cells, edges, 256, STRIPS, &reaches));
+                for strip in 0..STRIPS {
+                    let (got, want) = (cells.strip(strip).unwrap(), expected.strip(strip).unwrap());
+                    assert_eq!(got.columns, want.columns, "case {case}, strip {strip} at {level:?}");
+                    assert_eq!(got.occupied, want.occupied, "case {case}, strip {strip} at {level:?}");
+                }
+            }
+        }
+    }
+}

@@ -42,6 +42,14 @@ pub(crate) struct Edges<'a> {
     starts: &'a [u32],
 }
 
+impl<'a> Edges<'a> {
+    /// Those between each of the points numbered by `starts`, which go up, and the next.
+    #[cfg(test)]
+    pub(super) fn of(points: &'a [FixedPoint], starts: &'a [u32]) -> Self {
+        Self { points, starts }
+    }
+}
+
 impl Edges<'_> {
     /// How many edges there are; some may be horizontal.
     pub(crate) fn len(self) -> usize {
