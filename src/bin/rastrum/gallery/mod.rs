@@ -7,6 +7,9 @@ mod circles;
 mod font;
 mod lines;
 mod page;
+mod polygons;
+mod smoothing;
+mod stage;
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -93,6 +96,7 @@ impl Section {
 
 const SECTIONS: &[Section] = &[
     Section { title: "Lines and circles", id: "lines", tables: &[lines::ROWS, circles::ROWS] },
+    Section { title: "Polygons and antialiasing", id: "polygons", tables: &[polygons::ROWS, smoothing::ROWS] },
 ];
 
 /// Ranges of row numbers.
