@@ -7,6 +7,8 @@ mod circles;
 mod font;
 mod lines;
 mod page;
+mod pipeline;
+mod parts;
 mod polygons;
 mod smoothing;
 mod stage;
@@ -97,6 +99,7 @@ impl Section {
 const SECTIONS: &[Section] = &[
     Section { title: "Lines and circles", id: "lines", tables: &[lines::ROWS, circles::ROWS] },
     Section { title: "Polygons and antialiasing", id: "polygons", tables: &[polygons::ROWS, smoothing::ROWS] },
+    Section { title: "Pipeline and vertices", id: "pipeline", tables: &[pipeline::ROWS, parts::ROWS] },
 ];
 
 /// Ranges of row numbers.

@@ -1,14 +1,14 @@
 //! Small 3D draws for pictures: triangles by device pixels, scenes, and what they leave.
 
 use rastrum::glam::Mat4;
-use rastrum::scene::{Camera, Light, Material, Mesh, Scene, SceneSettings, SceneStats, render_picture};
+use rastrum::scene::{Camera, Light, Material, Mesh, Scene, SceneAntialias, SceneSettings, SceneStats, render_picture};
 use rastrum::space::{
     Blend, Counters, Depth, Fragment, Pipeline, Primitives, Samples, State, Target, camera, pixel_fn,
     vertex_fn,
 };
-use rastrum::{Color, Pixmap, Result};
+use rastrum::{Color, Pixmap, Rect, Result};
 
-use super::board::PAPER;
+use super::board::{Board, PAPER};
 
 /// A vertex that needs no shader.
 #[derive(Clone, Copy, Debug)]
@@ -140,6 +140,14 @@ pub(crate) fn settings() -> SceneSettings {
 
 pub(crate) fn view(scene: &Scene, camera: &Camera, (width, height): (u32, u32), settings: &SceneSettings) -> Result<(Pixmap, SceneStats)> {
     render_picture(scene, camera, width, height, settings)
+}
+
+/// Draws a scene as large as a rectangle of the board, with smooth edges.
+pub(crate) fn show(board: &mut Board, rect: Rect, scene: &Scene, camera: &Camera, settings: &SceneSettings) -> Result<SceneStats> {
+    let smooth = SceneSettings { antialias: SceneAntialias::Samples(Samples::Msaa8), ..*settings };
+    let (picture, stats) = view(scene, camera, (rect.width() as u32, rect.height() as u32), &smooth)?;
+    board.picture(rect, picture);
+    Ok(stats)
 }
 
 /// Random numbers for pictures: the same ones always.
