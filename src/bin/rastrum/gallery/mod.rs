@@ -12,6 +12,9 @@ mod parts;
 mod polygons;
 mod smoothing;
 mod stage;
+mod tiles;
+mod traversal;
+mod triangles;
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -100,6 +103,7 @@ const SECTIONS: &[Section] = &[
     Section { title: "Lines and circles", id: "lines", tables: &[lines::ROWS, circles::ROWS] },
     Section { title: "Polygons and antialiasing", id: "polygons", tables: &[polygons::ROWS, smoothing::ROWS] },
     Section { title: "Pipeline and vertices", id: "pipeline", tables: &[pipeline::ROWS, parts::ROWS] },
+    Section { title: "Triangle rasterization", id: "triangles", tables: &[triangles::ROWS, traversal::ROWS, tiles::ROWS] },
 ];
 
 /// Ranges of row numbers.

@@ -3,8 +3,8 @@
 use rastrum::glam::Mat4;
 use rastrum::scene::{Camera, Light, Material, Mesh, Scene, SceneAntialias, SceneSettings, SceneStats, render_picture};
 use rastrum::space::{
-    Blend, Counters, Depth, Fragment, Pipeline, Primitives, Samples, State, Target, camera, pixel_fn,
-    vertex_fn,
+    Blend, Counters, Depth, Fragment, Pipeline, Primitives, Samples, State, Target, VertexColor, VertexFn,
+    camera, pixel_fn, vertex_fn,
 };
 use rastrum::{Color, Pixmap, Rect, Result};
 
@@ -35,8 +35,17 @@ pub(crate) fn pipeline(width: u32, height: u32, state: State) -> Pipeline {
 
 /// Draws a list of triangles.
 pub(crate) fn draw(target: &mut Target, pipeline: &Pipeline, vertices: &[Vertex], shade: Shade<'_>) -> Counters {
-    let shader = vertex_fn(4, pass as fn(&Vertex, &mut [f32]) -> [f32; 4]);
-    pipeline.draw(target, &Primitives::triangles(vertices), &shader, &pixel_fn(4, shade))
+    pipeline.draw(target, &Primitives::triangles(vertices), &shader(), &pixel_fn(4, shade))
+}
+
+/// Draws a list of opaque triangles by the colours that they carry, depth first.
+pub(crate) fn draw_opaque(target: &mut Target, pipeline: &Pipeline, vertices: &[Vertex]) -> Counters {
+    pipeline.draw(target, &Primitives::triangles(vertices), &shader(), &VertexColor)
+}
+
+/// The vertex shader of all of these.
+pub(crate) fn shader() -> VertexFn<Vertex, fn(&Vertex, &mut [f32]) -> [f32; 4]> {
+    vertex_fn(4, pass)
 }
 
 /// The same of other primitives.
@@ -46,14 +55,12 @@ pub(crate) fn draw_primitives(
     primitives: &Primitives<'_, Vertex>,
     shade: Shade<'_>,
 ) -> Counters {
-    let shader = vertex_fn(4, pass as fn(&Vertex, &mut [f32]) -> [f32; 4]);
-    pipeline.draw(target, primitives, &shader, &pixel_fn(4, shade))
+    pipeline.draw(target, primitives, &shader(), &pixel_fn(4, shade))
 }
 
 /// Which primitives each band lists.
 pub(crate) fn bins(target: &Target, pipeline: &Pipeline, vertices: &[Vertex]) -> (u32, Vec<Vec<u32>>) {
-    let shader = vertex_fn(4, pass as fn(&Vertex, &mut [f32]) -> [f32; 4]);
-    pipeline.bins(target, &Primitives::triangles(vertices), &shader)
+    pipeline.bins(target, &Primitives::triangles(vertices), &shader())
 }
 
 /// The clip position of a place in device pixels with a depth of 0 ..= 1 and w = 1.
