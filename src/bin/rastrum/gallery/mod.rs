@@ -4,7 +4,9 @@
 
 mod board;
 mod circles;
+mod clipping;
 mod font;
+mod interpolation;
 mod lines;
 mod page;
 mod pipeline;
@@ -104,6 +106,7 @@ const SECTIONS: &[Section] = &[
     Section { title: "Polygons and antialiasing", id: "polygons", tables: &[polygons::ROWS, smoothing::ROWS] },
     Section { title: "Pipeline and vertices", id: "pipeline", tables: &[pipeline::ROWS, parts::ROWS] },
     Section { title: "Triangle rasterization", id: "triangles", tables: &[triangles::ROWS, traversal::ROWS, tiles::ROWS] },
+    Section { title: "Interpolation and clipping", id: "interpolation", tables: &[interpolation::ROWS, clipping::ROWS] },
 ];
 
 /// Ranges of row numbers.

@@ -14,7 +14,7 @@ use super::stage::{self, Triangle, Vertex};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(60, "Zmax culling", "Layers drawn front to back. A tile that lies behind the farthest depth stored for it is skipped whole: after the first layer nearly all tiles (blue) are.", zmax),
+    row(60, "Zmax culling", "Layers drawn front to back. A tile that lies behind the farthest depth stored for it is skipped whole (blue): all but those along the border that still shows.", zmax),
     row(61, "Zmin culling", "Layers drawn back to front. A tile that lies in front of the nearest stored depth needs no depth to be read: all of them (green) pass unread.", zmin),
     row(62, "Buffer compression", "A depth buffer's tiles: cleared (white, 0 bytes), one value (green, 4), a plane with small differences (blue, 44), too varied (red, 256).", compression),
     row(63, "Tiled texture layout", "Where texels lie in memory. In rows, a step down is a whole row away; in 4 × 4 tiles, neighbours both ways are mostly near.", layout),
@@ -37,7 +37,8 @@ fn layers(board: &mut Board, depths: [f32; 8], color: Color, hidden: bool) -> Re
     let pipeline = stage::pipeline(128, 128, State::default());
     let base = right.bottom - 30.0;
     for (i, (z, tint)) in depths.into_iter().zip(palette).enumerate() {
-        let inset = i as f32 * if hidden { 5.0 } else { 7.0 };
+        // Each layer behind reaches a little farther out; each one in front a little less far.
+        let inset = (if hidden { 7 - i } else { i }) as f32 * 6.0;
         let bounds = if hidden { [inset, inset, 128.0, 128.0] } else { [0.0, 0.0, 128.0 - inset, 128.0 - inset] };
         let counters = stage::draw_opaque(&mut target, &pipeline, &stage::quad(bounds, z, tint, (128, 128)));
         let share = if hidden { counters.tiles_hidden } else { counters.tiles_in_front };
@@ -121,12 +122,11 @@ fn setup(board: &mut Board) -> Result<()> {
     let rect = Rect::from_xywh(16.0, 10.0, 608.0, 300.0);
     let grid = board.grid(rect, 28, 17);
     let screen = (20, 12);
-    let triangles: [(Triangle, Color); 8] = [
+    let triangles: [(Triangle, Color); 7] = [
         ([(1.2, 10.6), (5.8, 1.4), (10.4, 8.9)], BLUE),
         ([(12.1, 9.8), (14.2, 2.2), (19.4, 7.1)], BLUE),
         ([(7.6, 3.2), (11.9, 4.4), (9.1, 7.2)], GREY),
         ([(2.0, 11.0), (7.0, 11.0), (12.0, 11.0)], RED),
-        ([(13.0, 1.0), (13.0, 1.0), (16.0, 2.0)], RED),
         ([(-3.8, -1.8), (-0.6, 2.4), (-3.2, 6.2)], AMBER),
         ([(20.8, 13.6), (23.6, 10.2), (22.8, 14.2)], AMBER),
         ([(11.58, 1.62), (11.9, 1.7), (11.7, 1.95)], VIOLET),
