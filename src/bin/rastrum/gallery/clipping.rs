@@ -1,6 +1,6 @@
 //! Clipping.
 
-use rastrum::space::{ClipPlane, ClipVertex, Samples, State, camera, clip_polygon, clip_triangle};
+use rastrum::space::{ClipPlane, ClipVertex, Depth, Samples, State, camera, clip_polygon, clip_triangle};
 use rastrum::{Color, FillRule, Point, Result};
 
 use super::board::{AMBER, BLUE, Board, GREY, INK, MINT, PALE, RED, ROSE, SKY};
@@ -49,15 +49,15 @@ fn road(board: &mut Board, rect: rastrum::Rect) -> Result<()> {
         let [a, b, c, d] = [corner(-half, 40.0), corner(half, 40.0), corner(half, -120.0), corner(-half, -120.0)];
         [a, b, c, a, c, d]
     };
-    let pipeline = stage::pipeline(size.0, size.1, State::default());
+    let pipeline = stage::pipeline(size.0, size.1, State { depth: Depth::OFF, ..State::default() });
+    stage::draw(&mut target, &pipeline, &strip(60.0), &|fragment| {
+        let z = fragment.varyings[1];
+        Some(stage::components(if (z * 0.35).rem_euclid(2.0) < 1.0 { MINT } else { super::board::GREEN }))
+    });
     stage::draw(&mut target, &pipeline, &strip(1.0), &|fragment| {
         let [x, z, ..] = fragment.varyings;
         let dash = x.abs() < 0.06 && (z * 0.7).rem_euclid(2.0) < 1.0;
         Some(stage::components(if dash || (x.abs() - 0.9).abs() < 0.04 { Color::WHITE } else { GREY }))
-    });
-    stage::draw(&mut target, &pipeline, &strip(60.0), &|fragment| {
-        let z = fragment.varyings[1];
-        Some(stage::components(if (z * 0.35).rem_euclid(2.0) < 1.0 { MINT } else { super::board::GREEN }))
     });
     board.picture(rect, target.to_pixmap()?);
     Ok(())

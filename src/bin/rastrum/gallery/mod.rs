@@ -5,7 +5,9 @@
 mod board;
 mod circles;
 mod clipping;
+mod depth;
 mod font;
+mod fragments;
 mod interpolation;
 mod lines;
 mod page;
@@ -14,6 +16,7 @@ mod parts;
 mod polygons;
 mod smoothing;
 mod stage;
+mod textures;
 mod tiles;
 mod traversal;
 mod triangles;
@@ -107,6 +110,7 @@ const SECTIONS: &[Section] = &[
     Section { title: "Pipeline and vertices", id: "pipeline", tables: &[pipeline::ROWS, parts::ROWS] },
     Section { title: "Triangle rasterization", id: "triangles", tables: &[triangles::ROWS, traversal::ROWS, tiles::ROWS] },
     Section { title: "Interpolation and clipping", id: "interpolation", tables: &[interpolation::ROWS, clipping::ROWS] },
+    Section { title: "Fragments and framebuffer", id: "fragments", tables: &[fragments::ROWS, textures::ROWS, depth::ROWS] },
 ];
 
 /// Ranges of row numbers.
