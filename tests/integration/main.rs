@@ -14,6 +14,8 @@ mod cli;
 mod determinism;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod fixtures;
+#[cfg(feature = "cli")]
+mod gallery;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod golden;
 #[cfg(feature = "cli")]

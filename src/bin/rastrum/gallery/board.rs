@@ -157,7 +157,10 @@ impl Board {
         let rect = grid.rect();
         let line = |canvas: &mut Canvas<'_>, rect: Rect| canvas.fill_rect(rect, FAINT);
         for x in 0..=grid.columns {
-            line(&mut self.canvas, Rect::from_xywh(rect.left + x as f32 * grid.cell, rect.top, 1.0, rect.height() + 1.0));
+            line(
+                &mut self.canvas,
+                Rect::from_xywh(rect.left + x as f32 * grid.cell, rect.top, 1.0, rect.height() + 1.0),
+            );
         }
         for y in 0..=grid.rows {
             line(&mut self.canvas, Rect::from_xywh(rect.left, rect.top + y as f32 * grid.cell, rect.width(), 1.0));
@@ -236,7 +239,11 @@ impl Board {
 
     /// A polyline on the board.
     pub(crate) fn polyline(&mut self, points: &[Point], width: f32, color: Color) {
-        self.canvas.draw_polyline(points, &Stroke::new(width).with_join(LineJoin::Round).with_cap(LineCap::Round), color);
+        self.canvas.draw_polyline(
+            points,
+            &Stroke::new(width).with_join(LineJoin::Round).with_cap(LineCap::Round),
+            color,
+        );
     }
 
     pub(crate) fn frame(&mut self, rect: Rect, color: Color) {
@@ -303,6 +310,9 @@ pub(crate) struct Axes {
 impl Axes {
     pub(crate) fn map(&self, x: f32, y: f32) -> Point {
         let t = |v: f32, (a, b): (f32, f32)| ((v - a) / (b - a)).clamp(-0.02, 1.02);
-        Point::new(self.area.left + self.area.width() * t(x, self.x), self.area.bottom - self.area.height() * t(y, self.y))
+        Point::new(
+            self.area.left + self.area.width() * t(x, self.x),
+            self.area.bottom - self.area.height() * t(y, self.y),
+        )
     }
 }

@@ -9,11 +9,36 @@ use super::board::{AMBER, BLUE, Board, Grid, INK, MINT, RED, ROSE, SKY, VIOLET, 
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(34, "Implicit circle", "F(x, y) = x² + y² − r² at each pixel: negative (blue, filled) inside, positive outside. Numbers are F.", implicit),
-    row(35, "Square-root circle", "y = round(√(r² − x²)) lights one pixel per column. Near the left and right ends the circle is steep and the gaps show; the midpoint circle has none.", square_root),
-    row(36, "Eight-way symmetry", "One octant (numbered) is computed. Seven reflections give the rest of the circle.", symmetry),
-    row(37, "Midpoint circle", "r = 8 starts from p = 1 − r; the octant's pixels are numbered in their order. It has 44 pixels in all.", midpoint),
-    row(38, "Circle off the origin", "The circle is computed around (0, 0) and moved: all copies are the same set of pixels.", moved),
+    row(
+        34,
+        "Implicit circle",
+        "F(x, y) = x² + y² − r² at each pixel: negative (blue, filled) inside, positive outside. Numbers are F.",
+        implicit,
+    ),
+    row(
+        35,
+        "Square-root circle",
+        "y = round(√(r² − x²)) lights one pixel per column. Near the left and right ends the circle is steep and the gaps show; the midpoint circle has none.",
+        square_root,
+    ),
+    row(
+        36,
+        "Eight-way symmetry",
+        "One octant (numbered) is computed. Seven reflections give the rest of the circle.",
+        symmetry,
+    ),
+    row(
+        37,
+        "Midpoint circle",
+        "r = 8 starts from p = 1 − r; the octant's pixels are numbered in their order. It has 44 pixels in all.",
+        midpoint,
+    ),
+    row(
+        38,
+        "Circle off the origin",
+        "The circle is computed around (0, 0) and moved: all copies are the same set of pixels.",
+        moved,
+    ),
 ];
 
 /// The circle's true outline.
@@ -29,7 +54,11 @@ fn implicit(board: &mut Board) -> Result<()> {
     for y in 0..11 {
         for x in 0..13 {
             let value = f(x, y);
-            let color = if value < 0 { mix(SKY, BLUE, -value as f32 / 60.0) } else { mix(rastrum::Color::WHITE, ROSE, value as f32 / 60.0) };
+            let color = if value < 0 {
+                mix(SKY, BLUE, -value as f32 / 60.0)
+            } else {
+                mix(rastrum::Color::WHITE, ROSE, value as f32 / 60.0)
+            };
             board.cell(&grid, (x, y), color);
         }
     }

@@ -8,8 +8,18 @@ use super::stage::{self, Vertex};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(87, "Clipping against six planes", "Left: triangles that leave the view are cut to its sides; colours are the pieces. Right: a road that runs on below and behind the viewer, where w is negative, drawn without harm.", six_planes),
-    row(88, "The four cases", "All corners inside: kept. All outside: dropped. One inside: one triangle. Two inside: a quadrilateral, two triangles. Blue is what is left.", four_cases),
+    row(
+        87,
+        "Clipping against six planes",
+        "Left: triangles that leave the view are cut to its sides; colours are the pieces. Right: a road that runs on below and behind the viewer, where w is negative, drawn without harm.",
+        six_planes,
+    ),
+    row(
+        88,
+        "The four cases",
+        "All corners inside: kept. All outside: dropped. One inside: one triangle. Two inside: a quadrilateral, two triangles. Blue is what is left.",
+        four_cases,
+    ),
 ];
 
 fn six_planes(board: &mut Board) -> Result<()> {
@@ -44,7 +54,8 @@ fn road(board: &mut Board, rect: rastrum::Rect) -> Result<()> {
     let view = camera::product(&m, &camera::look_at([0.3, 1.0, 0.0], [0.0, 0.75, -4.0], [0.0, 1.0, 0.0]));
     let mut target = stage::paper(size.0, size.1, Samples::Msaa4)?;
     target.clear_color(SKY);
-    let corner = |x: f32, z: f32| Vertex { position: camera::transform(&view, [x, 0.0, z, 1.0]), values: [x, z, 0.0, 1.0] };
+    let corner =
+        |x: f32, z: f32| Vertex { position: camera::transform(&view, [x, 0.0, z, 1.0]), values: [x, z, 0.0, 1.0] };
     let strip = |half: f32| {
         let [a, b, c, d] = [corner(-half, 40.0), corner(half, 40.0), corner(half, -120.0), corner(-half, -120.0)];
         [a, b, c, a, c, d]
@@ -74,7 +85,9 @@ fn four_cases(board: &mut Board) -> Result<()> {
         [(-0.8, -0.6), (-0.5, 0.8), (1.5, 0.2)],
     ];
     for (rect, corners) in panels.into_iter().zip(cases) {
-        let place = |x: f32, y: f32| Point::new(rect.left + (x + 1.2) / 3.0 * rect.width(), rect.top + (1.0 - y) / 2.0 * rect.height());
+        let place = |x: f32, y: f32| {
+            Point::new(rect.left + (x + 1.2) / 3.0 * rect.width(), rect.top + (1.0 - y) / 2.0 * rect.height())
+        };
         let inside = rastrum::Rect::from_ltrb(rect.left, rect.top, place(0.6, 0.0).x, rect.bottom);
         board.bar(inside, PALE);
         let polygon = clip_polygon(&corners.map(|(x, y)| ClipVertex::new([x, y, 0.0, 1.0], &[])), &[plane]);

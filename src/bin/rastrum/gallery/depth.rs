@@ -8,18 +8,73 @@ use super::stage::{self, Vertex};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(98, "Depth test", "The lecture's 8 × 8 grids: the depths stored, those of a triangle that comes, and the smaller of the two at each cell.", depth_test),
-    row(99, "Cleared to -1, greater", "Stored depths with clear value 1 and less (left), and with turned signs, a lower clear value and greater (right): other numbers, the same picture.", greater),
-    row(100, "Order does not matter", "The same triangles drawn in three orders, with a depth buffer (top: equal) and without (bottom: all different).", any_order),
-    row(104, "Painter's algorithm", "Discs drawn from far to near, each over what was there: the steps of a picture that needs no depth buffer.", painter),
-    row(105, "Where the painter fails", "Three bars, each over the next: no order of painting is right (left, one of six). The depth buffer is (right).", cycle),
-    row(106, "Z-fighting", "Two nearly equal walls, the red one nearer. 16-bit depths cannot tell them apart everywhere, floats can.", fighting),
-    row(107, "The depth curve", "z' over distance, near 1 and far 50: half of all values are spent on the first two units. Grey bars show the same step of distance on both ends.", curve),
-    row(108, "Remedy: near and far closer", "The same walls and 16 bits; with the planes at 0.1 and 1000, 1 and 500, and 40 and 120. The fight goes.", planes),
+    row(
+        98,
+        "Depth test",
+        "The lecture's 8 × 8 grids: the depths stored, those of a triangle that comes, and the smaller of the two at each cell.",
+        depth_test,
+    ),
+    row(
+        99,
+        "Cleared to -1, greater",
+        "Stored depths with clear value 1 and less (left), and with turned signs, a lower clear value and greater (right): other numbers, the same picture.",
+        greater,
+    ),
+    row(
+        100,
+        "Order does not matter",
+        "The same triangles drawn in three orders, with a depth buffer (top: equal) and without (bottom: all different).",
+        any_order,
+    ),
+    row(
+        104,
+        "Painter's algorithm",
+        "Discs drawn from far to near, each over what was there: the steps of a picture that needs no depth buffer.",
+        painter,
+    ),
+    row(
+        105,
+        "Where the painter fails",
+        "Three bars, each over the next: no order of painting is right (left, one of six). The depth buffer is (right).",
+        cycle,
+    ),
+    row(
+        106,
+        "Z-fighting",
+        "Two nearly equal walls, the red one nearer. 16-bit depths cannot tell them apart everywhere, floats can.",
+        fighting,
+    ),
+    row(
+        107,
+        "The depth curve",
+        "z' over distance, near 1 and far 50: half of all values are spent on the first two units. Grey bars show the same step of distance on both ends.",
+        curve,
+    ),
+    row(
+        108,
+        "Remedy: near and far closer",
+        "The same walls and 16 bits; with the planes at 0.1 and 1000, 1 and 500, and 40 and 120. The fight goes.",
+        planes,
+    ),
     row(109, "Remedy: more precision", "The same walls and planes with 16 and 24 bits and floats.", precision),
-    row(110, "Logarithmic depth", "A scene from 0.01 to 1,000,000: walls a thousandth apart near and far. Projected depth fights in the distance, logarithmic depth nowhere.", logarithmic),
-    row(111, "Polygon offset", "A decal on a tilted wall: in the same plane it fights (left); moved towards the viewer by slope and units, all of it shows (right).", offset),
-    row(112, "approxEqual", "0.1 + 0.2 is not 0.3: the error as it is, in units of 10⁻¹⁷, and which differences a relative tolerance accepts (green).", approximately),
+    row(
+        110,
+        "Logarithmic depth",
+        "A scene from 0.01 to 1,000,000: walls a thousandth apart near and far. Projected depth loses the nearer, red wall in the distance; logarithmic depth keeps it everywhere.",
+        logarithmic,
+    ),
+    row(
+        111,
+        "Polygon offset",
+        "A decal on a tilted wall: in the same plane it fights (left); moved towards the viewer by slope and units, all of it shows (right).",
+        offset,
+    ),
+    row(
+        112,
+        "approxEqual",
+        "0.1 + 0.2 is not 0.3: the error as it is, in units of 10⁻¹⁷, and which differences a relative tolerance accepts (green).",
+        approximately,
+    ),
 ];
 
 fn depth_test(board: &mut Board) -> Result<()> {
@@ -113,7 +168,14 @@ fn any_order(board: &mut Board) -> Result<()> {
 
 fn painter(board: &mut Board) -> Result<()> {
     let panels = board.tiles(3, &["1", "2", "3", "4", "5", "6"]);
-    let discs = [(24.0, 16.0, 15.0, VIOLET), (36.0, 24.0, 13.0, BLUE), (16.0, 28.0, 12.0, GREEN), (28.0, 34.0, 10.0, AMBER), (40.0, 14.0, 8.0, RED), (22.0, 22.0, 6.0, SKY)];
+    let discs = [
+        (24.0, 16.0, 15.0, VIOLET),
+        (36.0, 24.0, 13.0, BLUE),
+        (16.0, 28.0, 12.0, GREEN),
+        (28.0, 34.0, 10.0, AMBER),
+        (40.0, 14.0, 8.0, RED),
+        (22.0, 22.0, 6.0, SKY),
+    ];
     let size = (54, 46);
     let mut target = stage::paper(size.0, size.1, Samples::One)?;
     let pipeline = stage::pipeline(size.0, size.1, State { depth: Depth::OFF, ..State::default() });
@@ -132,7 +194,13 @@ fn painter(board: &mut Board) -> Result<()> {
 fn bars() -> [Vec<Vertex>; 3] {
     let colors = [RED, GREEN, BLUE];
     [(0.0_f32, 1.0_f32), (0.866, -0.5), (-0.866, -0.5)].map(|(s, c)| {
-        let color = colors[if s == 0.0 { 0 } else if s > 0.0 { 1 } else { 2 }];
+        let color = colors[if s == 0.0 {
+            0
+        } else if s > 0.0 {
+            1
+        } else {
+            2
+        }];
         let turn = |x: f32, y: f32, z: f32| Vertex {
             position: [x * c - y * s, x * s + y * c, z, 1.0],
             values: stage::components(color),
@@ -253,8 +321,7 @@ fn offset(board: &mut Board) -> Result<()> {
     let m = camera::perspective(1.0, 1.0, 0.5, 50.0);
     let patch = |half: f32, color: Color, order: [usize; 6]| {
         let corner = |x: f32, y: f32| {
-            // Depth by another way for the smaller one would be rounded otherwise, too.
-            let position = camera::transform(&m, [x * half, y * half, -4.0 + x * half * 0.7 + y * half * 0.3, 1.0]);
+            let position = camera::transform(&m, [x * half, y * half, -4.0 + x * half * 0.7 + y * half * 0.31, 1.0]);
             Vertex { position, values: stage::components(color) }
         };
         let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(0.8, 1.0), corner(-1.0, 0.9)];
@@ -262,7 +329,11 @@ fn offset(board: &mut Board) -> Result<()> {
     };
     for (rect, slope, units) in [(left, 0.0, 0.0), (right, -1.0, -4.0)] {
         let mut target = stage::paper(64, 64, Samples::One)?;
-        stage::draw_opaque(&mut target, &stage::pipeline(64, 64, State::default()), &patch(1.9, SKY, [0, 1, 2, 0, 2, 3]));
+        stage::draw_opaque(
+            &mut target,
+            &stage::pipeline(64, 64, State::default()),
+            &patch(2.43, SKY, [0, 1, 2, 0, 2, 3]),
+        );
         let depth = Depth { bias_slope: slope, bias_units: units, ..Depth::default() };
         let state = State { depth, ..State::default() };
         stage::draw_opaque(&mut target, &stage::pipeline(64, 64, state), &patch(1.0, RED, [1, 2, 3, 1, 3, 0]));

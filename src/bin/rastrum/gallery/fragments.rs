@@ -11,19 +11,84 @@ use super::stage::{self, Vertex};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(15, "Discard", "A shader that discards makes round holes. They leave neither colour nor depth: the red square behind, drawn later, shows through.", discard),
-    row(16, "Colour buffer", "Cleared to one value, then written by a triangle. The numbers are what is read back of the red component.", color_buffer),
-    row(17, "Depth buffer", "The same two triangles with four compare functions. Which one shows, and whether anything does, is the function's choice.", depth_buffer),
-    row(18, "Stencil operations", "A stencil buffer of rising values (top row) after each operation on its lower half, the reference being 5.", stencil_operations),
-    row(19, "Accumulation buffer", "Eight frames of a moving square, added up and divided: motion blur. Equal frames would give the frame.", accumulation),
-    row(20, "Two buffers", "While the front buffer is shown, the back buffer is drawn. Present swaps them: nobody sees the half-drawn one.", double_buffer),
-    row(93, "Scissor test", "The same drawing without and with a scissor rectangle: nothing is drawn outside, and inside it is unchanged.", scissor),
-    row(94, "Alpha test", "A disc whose alpha falls outwards (left), kept where alpha is at least one half (right). What fails leaves no depth either.", alpha_test),
-    row(96, "Stencil test", "The eight functions with reference 3 against stored values 0 to 6: blue cells pass.", stencil_test),
-    row(97, "Stencil shadows", "A box's shadow volume (left, outlined) is counted with z-fail: where the count is not zero, the floor is in shadow.", stencil_shadows),
-    row(101, "Alpha blending", "Source over: C = α·Cf + (1 − α)·Cb for α from 0 to 1 over two grounds.", alpha_blending),
-    row(102, "Blend stages", "Two discs in the four other stages: added, the smaller and the larger of each component, and multiplied.", blend_stages),
-    row(103, "Sorting for transparency", "Three panes of half-transparent glass. Drawn from far to near they mix rightly; in the wrong order the far ones come to the front.", sorting),
+    row(
+        15,
+        "Discard",
+        "A shader that discards makes round holes. They leave neither colour nor depth: the red square behind, drawn later, shows through.",
+        discard,
+    ),
+    row(
+        16,
+        "Colour buffer",
+        "Cleared to one value, then written by a triangle. The numbers are what is read back of the red component.",
+        color_buffer,
+    ),
+    row(
+        17,
+        "Depth buffer",
+        "The same two triangles with four compare functions. Which one shows, and whether anything does, is the function's choice.",
+        depth_buffer,
+    ),
+    row(
+        18,
+        "Stencil operations",
+        "A stencil buffer of rising values (top row) after each operation on its lower half, the reference being 5.",
+        stencil_operations,
+    ),
+    row(
+        19,
+        "Accumulation buffer",
+        "Eight frames of a moving square, added up and divided: motion blur. Equal frames would give the frame.",
+        accumulation,
+    ),
+    row(
+        20,
+        "Two buffers",
+        "While the front buffer is shown, the back buffer is drawn. Present swaps them: nobody sees the half-drawn one.",
+        double_buffer,
+    ),
+    row(
+        93,
+        "Scissor test",
+        "The same drawing without and with a scissor rectangle: nothing is drawn outside, and inside it is unchanged.",
+        scissor,
+    ),
+    row(
+        94,
+        "Alpha test",
+        "A disc whose alpha falls outwards (left), kept where alpha is at least one half (right). What fails leaves no depth either.",
+        alpha_test,
+    ),
+    row(
+        96,
+        "Stencil test",
+        "The eight functions with reference 3 against stored values 0 to 6: blue cells pass.",
+        stencil_test,
+    ),
+    row(
+        97,
+        "Stencil shadows",
+        "A box's shadow volume (left, outlined) is counted with z-fail: where the count is not zero, the floor is in shadow.",
+        stencil_shadows,
+    ),
+    row(
+        101,
+        "Alpha blending",
+        "Source over: C = α·Cf + (1 − α)·Cb for α from 0 to 1 over two grounds.",
+        alpha_blending,
+    ),
+    row(
+        102,
+        "Blend stages",
+        "Two discs in the four other stages: added, the smaller and the larger of each component, and multiplied.",
+        blend_stages,
+    ),
+    row(
+        103,
+        "Sorting for transparency",
+        "Three panes of half-transparent glass. Drawn from far to near they mix rightly; in the wrong order the far ones come to the front.",
+        sorting,
+    ),
 ];
 
 const SIZE: (u32, u32) = (32, 24);
@@ -73,7 +138,7 @@ fn two_triangles() -> Vec<Vertex> {
 }
 
 fn depth_buffer(board: &mut Board) -> Result<()> {
-    let panels = board.tiles(2, &["LESS, CLEAR 1", "GREATER, CLEAR 0", "ALWAYS", "NEVER AGAIN: EQUAL"]);
+    let panels = board.tiles(2, &["LESS, CLEAR 1", "GREATER, CLEAR 0", "ALWAYS", "EQUAL, CLEAR 0.5"]);
     let cases = [(Compare::Less, 1.0), (Compare::Greater, 0.0), (Compare::Always, 1.0), (Compare::Equal, 0.5)];
     for (rect, (compare, clear)) in panels.into_iter().zip(cases) {
         let mut target = stage::paper(SIZE.0, SIZE.1, Samples::One)?;
@@ -110,7 +175,11 @@ fn stencil_operations(board: &mut Board) -> Result<()> {
         let grid = board.grid(rect, 7, 2);
         for (x, y) in (0..2).flat_map(|y| (0..7).map(move |x| (x, y))) {
             let value = target.stencil(x, y).unwrap_or(0);
-            board.cell(&grid, (x as i32, y as i32), mix(Color::WHITE, if y == 0 { GREY } else { BLUE }, f32::from(value) / 400.0));
+            board.cell(
+                &grid,
+                (x as i32, y as i32),
+                mix(Color::WHITE, if y == 0 { GREY } else { BLUE }, f32::from(value) / 400.0),
+            );
             board.mark(&grid, (x as i32, y as i32), &value.to_string(), INK);
         }
         board.lines(&grid);
@@ -121,12 +190,8 @@ fn stencil_operations(board: &mut Board) -> Result<()> {
 /// Draws a rectangle onto the stencil buffer alone.
 fn stamp(target: &mut Target, face: StencilFace, bounds: [f32; 4]) {
     let (width, height) = (target.width(), target.height());
-    let state = State {
-        depth: Depth::OFF,
-        stencil: Some(Stencil::both(face)),
-        color_mask: [false; 4],
-        ..State::default()
-    };
+    let state =
+        State { depth: Depth::OFF, stencil: Some(Stencil::both(face)), color_mask: [false; 4], ..State::default() };
     let list = stage::quad(bounds, 0.5, Color::BLACK, (width, height));
     stage::draw(target, &stage::pipeline(width, height, state), &list, &stage::carried);
 }
@@ -246,7 +311,8 @@ fn stencil_shadows(board: &mut Board) -> Result<()> {
     let size = (left.width() as u32, left.height() as u32);
     let view = Camera { near: 0.5, far: 30.0, ..Camera::look_at([2.8, 3.4, 4.6], [-0.2, 0.4, 0.0], [0.0, 1.0, 0.0]) };
     let m = camera::product(&view.projection_matrix(size.0 as f32 / size.1 as f32), &view.view);
-    let place = |p: [f32; 4], color: Color| Vertex { position: camera::transform(&m, p), values: stage::components(color) };
+    let place =
+        |p: [f32; 4], color: Color| Vertex { position: camera::transform(&m, p), values: stage::components(color) };
     let solid = |mesh: &Mesh, color: Color| -> Vec<Vertex> {
         let shades = [0.8, 0.65, 1.0, 0.5, 0.9, 0.6];
         let face = |i: usize| mix(Color::BLACK, color, shades[i / 2 % 6]);
@@ -263,7 +329,7 @@ fn stencil_shadows(board: &mut Board) -> Result<()> {
         }
         if shown {
             let fill = rastrum::space::Fill::Wireframe;
-            let state = State { fill, depth: Depth { write: false, ..Depth::default() }, ..State::default() };
+            let state = State { fill, depth: Depth::OFF, ..State::default() };
             stage::draw(&mut target, &stage::pipeline(size.0, size.1, state), &volumes, &stage::carried);
         } else {
             let count = |op: StencilOp| StencilFace { depth_fail: op, ..StencilFace::default() };
@@ -272,8 +338,11 @@ fn stencil_shadows(board: &mut Board) -> Result<()> {
             let state = State { stencil: Some(stencil), depth, color_mask: [false; 4], ..State::default() };
             stage::draw(&mut target, &stage::pipeline(size.0, size.1, state), &volumes, &stage::carried);
             let dark = StencilFace { compare: Compare::NotEqual, ..StencilFace::default() };
-            let state = State { stencil: Some(Stencil::both(dark)), depth: Depth::OFF, blend: Blend::SourceOver, ..State::default() };
-            let all = stage::quad([0.0, 0.0, size.0 as f32, size.1 as f32], 0.5, INK.with_opacity(0.6), size);
+            // Only where something is drawn: behind it there is no floor for a shadow.
+            let depth = Depth { write: false, ..Depth::compare(Compare::Greater) };
+            let state =
+                State { stencil: Some(Stencil::both(dark)), depth, blend: Blend::SourceOver, ..State::default() };
+            let all = stage::quad([0.0, 0.0, size.0 as f32, size.1 as f32], 0.9999, INK.with_opacity(0.6), size);
             stage::draw(&mut target, &stage::pipeline(size.0, size.1, state), &all, &stage::carried);
         }
         board.picture(rect, target.to_pixmap()?);
@@ -287,7 +356,8 @@ fn alpha_blending(board: &mut Board) -> Result<()> {
     let mut target = stage::paper(size.0, size.1, Samples::One)?;
     let plain = stage::pipeline(size.0, size.1, State::default());
     stage::draw(&mut target, &plain, &stage::quad([0.0, 6.0, 33.0, 12.0], 0.9, INK, size), &stage::carried);
-    let over = stage::pipeline(size.0, size.1, State { blend: Blend::SourceOver, depth: Depth::OFF, ..State::default() });
+    let over =
+        stage::pipeline(size.0, size.1, State { blend: Blend::SourceOver, depth: Depth::OFF, ..State::default() });
     for i in 0..11 {
         let x = i as f32 * 3.0;
         let color = RED.with_opacity(i as f32 / 10.0);

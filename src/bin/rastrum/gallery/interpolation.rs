@@ -11,18 +11,78 @@ use super::stage::{self, Triangle, Vertex};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(74, "Barycentrics from areas", "A point cuts the triangle into three. Each one's share of the area, in percent, is the weight of the corner across (same colour); they add up to 100.", areas),
-    row(75, "u and v from edge functions", "u and v in percent at every pixel: an edge function over twice the area. u is 0 on one side and 100 at the corner across from it.", u_and_v),
-    row(76, "Interpolation without perspective", "A value of 0, 50 and 100 at the corners. On every row the steps from pixel to pixel are equal, and the lines of equal value are straight and evenly spaced.", affine),
-    row(77, "I/z and 1/z", "A value along an edge that goes into the distance. 1/z (grey) and I/z (amber) are linear on the screen; their quotient is the true value (blue), plain interpolation (red) is not.", quotient),
-    row(78, "Weights by e / w", "A triangle whose right corner is four times as far. Bands are tenths of that corner's weight: evenly spaced by e alone (left), crowded towards the far corner by e/w (right).", weights),
-    row(79, "u/w, then divide", "A checkered floor of two triangles. Interpolated on the screen it breaks along the diagonal; by u/w and 1/w, divided at each pixel, it is flat.", checker),
-    row(80, "Homogeneous divide", "Points (x, w) and their rays through the origin. Dividing by w lands all points of a ray on the same place of the line w = 1.", divide),
-    row(81, "Once per triangle, once per pixel", "Set-up work (three corners' worth) is done once for each triangle, the rest once for each pixel of it. Bars: triangles, and pixels drawn.", work),
-    row(82, "Incremental evaluation", "A linear value over 4,096 pixels by adding the step each time (red), against one product (blue): the error of the sum grows, here in millionths, and stays small.", drift),
-    row(83, "Plane coefficients", "a·x + b·y + c through three corners' values by Cramer's rule. The plane goes on beyond the triangle, and is met at each corner.", plane),
-    row(84, "Several parameters at once", "One triangle with sixteen varyings, each with its own three values at the corners.", varyings),
-    row(85, "Normals between corners", "Weighted normals are too short in the middle (red); normalised they keep their length (green). Right: the length before.", normals),
+    row(
+        74,
+        "Barycentrics from areas",
+        "A point cuts the triangle into three. Each one's share of the area, in percent, is the weight of the corner across (same colour); they add up to 100.",
+        areas,
+    ),
+    row(
+        75,
+        "u and v from edge functions",
+        "u and v in percent at every pixel: an edge function over twice the area. u is 0 on one side and 100 at the corner across from it.",
+        u_and_v,
+    ),
+    row(
+        76,
+        "Interpolation without perspective",
+        "A value of 0, 50 and 100 at the corners. On every row the steps from pixel to pixel are equal, and the lines of equal value are straight and evenly spaced.",
+        affine,
+    ),
+    row(
+        77,
+        "I/z and 1/z",
+        "A value along an edge that goes into the distance. 1/z (grey) and I/z (amber) are linear on the screen; their quotient is the true value (blue), plain interpolation (red) is not.",
+        quotient,
+    ),
+    row(
+        78,
+        "Weights by e / w",
+        "A triangle whose right corner is four times as far. Bands are tenths of that corner's weight: evenly spaced by e alone (left), crowded towards the far corner by e/w (right).",
+        weights,
+    ),
+    row(
+        79,
+        "u/w, then divide",
+        "A checkered floor of two triangles. Interpolated on the screen it breaks along the diagonal; by u/w and 1/w, divided at each pixel, it is flat.",
+        checker,
+    ),
+    row(
+        80,
+        "Homogeneous divide",
+        "Points (x, w) and their rays through the origin. Dividing by w lands all points of a ray on the same place of the line w = 1.",
+        divide,
+    ),
+    row(
+        81,
+        "Once per triangle, once per pixel",
+        "Set-up work (three corners' worth) is done once for each triangle, the rest once for each pixel of it. Bars: triangles, and pixels drawn.",
+        work,
+    ),
+    row(
+        82,
+        "Incremental evaluation",
+        "A linear value over 4,096 pixels by adding the step each time (red), against one product (blue): the error of the sum grows, here in millionths, and stays small.",
+        drift,
+    ),
+    row(
+        83,
+        "Plane coefficients",
+        "a·x + b·y + c through three corners' values by Cramer's rule. The plane goes on beyond the triangle, and is met at each corner.",
+        plane,
+    ),
+    row(
+        84,
+        "Several parameters at once",
+        "One triangle with sixteen varyings, each with its own three values at the corners.",
+        varyings,
+    ),
+    row(
+        85,
+        "Normals between corners",
+        "Weighted normals are too short in the middle (red); normalised they keep their length (green). Right: the length before.",
+        normals,
+    ),
     row(86, "Phong per pixel", "Ambient, diffuse and specular light, computed at each pixel, and their sum.", phong),
 ];
 
@@ -32,7 +92,8 @@ fn areas(board: &mut Board) -> Result<()> {
     let whole = board.whole();
     let grid = board.grid(whole, 14, 9);
     let p = (6.2, 5.2);
-    let area = |a: (f32, f32), b: (f32, f32), c: (f32, f32)| ((b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)).abs();
+    let area =
+        |a: (f32, f32), b: (f32, f32), c: (f32, f32)| ((b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)).abs();
     let [a, b, c] = CORNERS;
     for ((q, r), color) in [((b, c), ROSE), ((c, a), MINT), ((a, b), SKY)] {
         let points = [p, q, r].map(|(x, y)| grid.map(x, y));
@@ -111,7 +172,12 @@ fn quotient(board: &mut Board) -> Result<()> {
     board.curve(&axes, steps().map(|t| (t, over(t))), AMBER);
     board.curve(&axes, steps().map(|t| (t, t)), RED);
     board.curve(&axes, steps().map(|t| (t, over(t) / one_over(t))), BLUE);
-    for (t, y, text, color) in [(0.05, 0.99, "1/Z", GREY), (0.75, 0.16, "I/Z", AMBER), (0.34, 0.5, "I ON THE SCREEN", RED), (0.5, 0.09, "I", BLUE)] {
+    for (t, y, text, color) in [
+        (0.05, 0.99, "1/Z", GREY),
+        (0.75, 0.16, "I/Z", AMBER),
+        (0.34, 0.5, "I ON THE SCREEN", RED),
+        (0.5, 0.09, "I", BLUE),
+    ] {
         let at = axes.map(t, y);
         board.label(at.x, at.y - 14.0, 12.0, text, color);
     }
@@ -244,7 +310,15 @@ fn plane(board: &mut Board) -> Result<()> {
     for (x, y) in (0..18).flat_map(|y| (0..28).map(move |x| (x, y))) {
         let v = a * (x as f32 + 0.5) + b * (y as f32 + 0.5) + c;
         let banded = (v / 10.0).floor() / 10.0;
-        board.cell(&grid, (x, y), mix(mix(SKY, ROSE, banded.clamp(0.0, 1.0)), Color::WHITE, if (0.0..=1.0).contains(&banded) { 0.0 } else { 0.5 }));
+        board.cell(
+            &grid,
+            (x, y),
+            mix(
+                mix(SKY, ROSE, banded.clamp(0.0, 1.0)),
+                Color::WHITE,
+                if (0.0..=1.0).contains(&banded) { 0.0 } else { 0.5 },
+            ),
+        );
     }
     board.lines(&grid);
     board.outline(&grid, &t, 2.2, INK);

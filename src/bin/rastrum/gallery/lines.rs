@@ -8,19 +8,84 @@ use super::board::{AMBER, BLUE, Board, GREEN, GREY, Grid, INK, MINT, RED, ROSE, 
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(21, "Bresenham's line", "Left: one line in each octant, from the middle outwards. Right: where the ideal line passes exactly between two pixels, the tie goes to E, the pixel that goes straight on; both directions light the same pixels.", bresenham_line),
-    row(22, "Bresenham, step by step", "The lecture's example from (20, 10) to (30, 18). The decision value under each column says whether the next pixel steps down: it does where the value is above 0.", worked_example),
-    row(23, "Low and high slopes", "Two loops, one that steps along x and one that steps along y. Blue lines are flatter than 45°, red ones steeper: each has one pixel per column or per row.", low_high),
-    row(24, "Bresenham with a float error", "The error that the variant with floats carries along, as bars: it grows by the slope and falls by one where the line steps down. The pixels are those of the integer form.", float_error),
-    row(25, "y = m x + b, rounded", "Each column's y is computed and rounded to the nearest pixel. The rings mark ties, where rounding up (red) differs from Bresenham's choice (blue).", slope_intercept),
-    row(26, "DDA", "x and y advance in equal steps; dots are the exact places, squares the pixels they are rounded to.", dda),
-    row(27, "Midpoint line", "Whether the midpoint between E and SE lies above or below the line decides. Numbers are twice F at that point: above 0, the next pixel is SE.", midpoint),
-    row(28, "The ideal line", "0°, 45° and 90° come out exactly, and both end points are lit at any angle: the ideal lines are drawn over their pixels.", ideal),
-    row(29, "A line as a rectangle", "Pixels whose centre is inside a rectangle of width 1. Columns have one pixel or two: the uneven width is what sampling does to thin shapes.", rectangle),
-    row(30, "Width along the grid", "Width counted in pixels of a column or row. All three lines count three pixels a column, but the one at 45° is thinner, by 1/√2, across its own direction.", grid_width),
-    row(31, "A line as two triangles", "Blue and green are the two triangles of a thick line. No pixel of the diagonal is drawn by both, and none is left out.", two_triangles),
-    row(32, "An attribute along a line", "α runs from 0 to 1 along the line: the projection of each pixel onto it. Numbers are percent.", attribute),
-    row(33, "Linear interpolation", "Values between two ends: (1 − t)·a + t·b gives both ends exactly, and equal steps between.", interpolation),
+    row(
+        21,
+        "Bresenham's line",
+        "Left: one line in each octant, from the middle outwards. Right: where the ideal line passes exactly between two pixels, the tie goes to E, the pixel that goes straight on; both directions light the same pixels.",
+        bresenham_line,
+    ),
+    row(
+        22,
+        "Bresenham, step by step",
+        "The lecture's example from (20, 10) to (30, 18). The decision value under each column says whether the next pixel steps down: it does where the value is above 0.",
+        worked_example,
+    ),
+    row(
+        23,
+        "Low and high slopes",
+        "Two loops, one that steps along x and one that steps along y. Blue lines are flatter than 45°, red ones steeper: each has one pixel per column or per row.",
+        low_high,
+    ),
+    row(
+        24,
+        "Bresenham with a float error",
+        "The error that the variant with floats carries along, as bars: it grows by the slope and falls by one where the line steps down. The pixels are those of the integer form.",
+        float_error,
+    ),
+    row(
+        25,
+        "y = m x + b, rounded",
+        "Each column's y is computed and rounded to the nearest pixel. The rings mark ties, where rounding up (red) differs from Bresenham's choice (blue).",
+        slope_intercept,
+    ),
+    row(
+        26,
+        "DDA",
+        "x and y advance in equal steps; dots are the exact places, squares the pixels they are rounded to.",
+        dda,
+    ),
+    row(
+        27,
+        "Midpoint line",
+        "Whether the midpoint between E and SE lies above or below the line decides. Numbers are twice F at that point: above 0, the next pixel is SE.",
+        midpoint,
+    ),
+    row(
+        28,
+        "The ideal line",
+        "0°, 45° and 90° come out exactly, and both end points are lit at any angle: the ideal lines are drawn over their pixels.",
+        ideal,
+    ),
+    row(
+        29,
+        "A line as a rectangle",
+        "Pixels whose centre is inside a rectangle of width 1. Columns have one pixel or two: the uneven width is what sampling does to thin shapes.",
+        rectangle,
+    ),
+    row(
+        30,
+        "Width along the grid",
+        "Width counted in pixels of a column or row. All three lines count three pixels a column, but the one at 45° is thinner, by 1/√2, across its own direction.",
+        grid_width,
+    ),
+    row(
+        31,
+        "A line as two triangles",
+        "Blue and green are the two triangles of a thick line. No pixel of the diagonal is drawn by both, and none is left out.",
+        two_triangles,
+    ),
+    row(
+        32,
+        "An attribute along a line",
+        "α runs from 0 to 1 along the line: the projection of each pixel onto it. Numbers are percent.",
+        attribute,
+    ),
+    row(
+        33,
+        "Linear interpolation",
+        "Values between two ends: (1 − t)·a + t·b gives both ends exactly, and equal steps between.",
+        interpolation,
+    ),
 ];
 
 fn octants() -> impl Iterator<Item = ((i32, i32), usize)> {

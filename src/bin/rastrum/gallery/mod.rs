@@ -5,15 +5,17 @@
 mod board;
 mod circles;
 mod clipping;
+mod culling;
 mod depth;
 mod font;
 mod fragments;
 mod interpolation;
 mod lines;
 mod page;
-mod pipeline;
 mod parts;
+mod pipeline;
 mod polygons;
+mod shadows;
 mod smoothing;
 mod stage;
 mod textures;
@@ -108,9 +110,22 @@ const SECTIONS: &[Section] = &[
     Section { title: "Lines and circles", id: "lines", tables: &[lines::ROWS, circles::ROWS] },
     Section { title: "Polygons and antialiasing", id: "polygons", tables: &[polygons::ROWS, smoothing::ROWS] },
     Section { title: "Pipeline and vertices", id: "pipeline", tables: &[pipeline::ROWS, parts::ROWS] },
-    Section { title: "Triangle rasterization", id: "triangles", tables: &[triangles::ROWS, traversal::ROWS, tiles::ROWS] },
-    Section { title: "Interpolation and clipping", id: "interpolation", tables: &[interpolation::ROWS, clipping::ROWS] },
-    Section { title: "Fragments and framebuffer", id: "fragments", tables: &[fragments::ROWS, textures::ROWS, depth::ROWS] },
+    Section {
+        title: "Triangle rasterization",
+        id: "triangles",
+        tables: &[triangles::ROWS, traversal::ROWS, tiles::ROWS],
+    },
+    Section {
+        title: "Interpolation and clipping",
+        id: "interpolation",
+        tables: &[interpolation::ROWS, clipping::ROWS],
+    },
+    Section {
+        title: "Fragments and framebuffer",
+        id: "fragments",
+        tables: &[fragments::ROWS, textures::ROWS, depth::ROWS],
+    },
+    Section { title: "Shadows and culling", id: "shadows", tables: &[shadows::ROWS, culling::ROWS] },
 ];
 
 /// Ranges of row numbers.
@@ -128,7 +143,10 @@ fn rows(text: &str) -> Result<Wanted, String> {
     }
     for (first, last) in &ranges {
         if !SECTIONS.iter().flat_map(Section::rows).any(|row| (*first..=*last).contains(&row.number)) {
-            return Err(format!("there is no row {first}{}", if first == last { String::new() } else { format!(" to {last}") }));
+            return Err(format!(
+                "there is no row {first}{}",
+                if first == last { String::new() } else { format!(" to {last}") }
+            ));
         }
     }
     Ok(ranges.into())
@@ -179,7 +197,9 @@ fn draw_all(rows: &[&Row], folder: &Path, arguments: &GalleryArguments) -> Vec<u
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
                     bar.set_message(row.name);
                     if let Err(error) = draw(row, folder) {
-                        bar.suspend(|| report::complain(&Failure::new(format!("row {}: {error}", row.number)).to_string()));
+                        bar.suspend(|| {
+                            report::complain(&Failure::new(format!("row {}: {error}", row.number)).to_string())
+                        });
                         if let Ok(mut failures) = failures.lock() {
                             failures.push(row.number);
                         }

@@ -30,7 +30,9 @@ figcaption .number{color:var(--soft);font-weight:400;font-variant-numeric:tabula
 /// The page of those rows that were drawn.
 pub(super) fn page(sections: &[Section], drawn: impl Fn(&Row) -> bool) -> String {
     let mut out = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    out.push_str("<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>rastrum gallery</title>\n");
+    out.push_str(
+        "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>rastrum gallery</title>\n",
+    );
     // Writing to a string cannot fail.
     let _ = write!(out, "<style>\n{STYLE}</style>\n</head>\n<body>\n");
     let count = sections.iter().flat_map(Section::rows).filter(|row| drawn(row)).count();

@@ -10,13 +10,48 @@ use super::stage::{self, Vertex};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(10, "Primitive assembly", "The same numbered vertices as a list (three for each triangle), a strip (each new one with the two before) and a fan (each new one with the first).", assembly),
-    row(11, "Points", "Points of size 1, 2, 3, 5 and 8: squares of so many pixels around their place (dots). Size 1 lights exactly its pixel.", points),
-    row(12, "Segments and chains", "Drawn with half-transparent ink: separate segments paint each joint twice (dark cells), a chain paints it once.", chains),
-    row(139, "Scene graph", "Each part hangs on another. Turning the shoulder by a little turns everything beyond it: three poses that differ in two angles.", graph),
-    row(140, "No graphics interface", "From the drawing call to the picture in memory there is only this library: no driver and no GPU.", stack),
-    row(141, "Independent parallel stages", "The bands that 1, 2 and 8 threads take turns at, in colours, and the triangles that each of them drew: the bytes are the same.", threads),
-    row(142, "REYES micropolygons", "A curved patch: its control net, the diced grid with a colour for each micropolygon, and the patch shaded.", reyes),
+    row(
+        10,
+        "Primitive assembly",
+        "The same numbered vertices as a list (three for each triangle), a strip (each new one with the two before) and a fan (each new one with the first).",
+        assembly,
+    ),
+    row(
+        11,
+        "Points",
+        "Points of size 1, 2, 3, 5 and 8: squares of so many pixels around their place (dots). Size 1 lights exactly its pixel.",
+        points,
+    ),
+    row(
+        12,
+        "Segments and chains",
+        "Drawn with half-transparent ink: separate segments paint each joint twice (dark cells), a chain paints it once.",
+        chains,
+    ),
+    row(
+        139,
+        "Scene graph",
+        "Each part hangs on another. Turning the shoulder by a little turns everything beyond it: three poses that differ in two angles.",
+        graph,
+    ),
+    row(
+        140,
+        "No graphics interface",
+        "From the drawing call to the picture in memory there is only this library: no driver and no GPU.",
+        stack,
+    ),
+    row(
+        141,
+        "Independent parallel stages",
+        "The bands that 1, 2 and 8 threads take turns at, in colours, and the triangles that each of them drew: the bytes are the same.",
+        threads,
+    ),
+    row(
+        142,
+        "REYES micropolygons",
+        "A curved patch: its control net, the diced grid with a colour for each micropolygon, and the patch shaded.",
+        reyes,
+    ),
 ];
 
 fn assembly(board: &mut Board) -> Result<()> {
@@ -28,10 +63,12 @@ fn assembly(board: &mut Board) -> Result<()> {
         let grid = board.grid(rect, 10, 10);
         let primitives = Primitives::new(&places, topology);
         for (i, corners) in primitives.iter().enumerate() {
-            let at: Vec<Point> = corners.iter().filter_map(|k| places.get(*k as usize)).map(|(x, y)| grid.map(*x, *y)).collect();
+            let at: Vec<Point> =
+                corners.iter().filter_map(|k| places.get(*k as usize)).map(|(x, y)| grid.map(*x, *y)).collect();
             board.canvas.fill_polygon(&at, FillRule::NonZero, [SKY, MINT, ROSE, AMBER][i % 4]);
             board.canvas.stroke_polygon(&at, &Stroke::new(1.6), INK);
-            let middle = at.iter().fold(Point::new(0.0, 0.0), |sum, p| Point::new(sum.x + p.x / 3.0, sum.y + p.y / 3.0));
+            let middle =
+                at.iter().fold(Point::new(0.0, 0.0), |sum, p| Point::new(sum.x + p.x / 3.0, sum.y + p.y / 3.0));
             board.middle(middle, 11.0, &format!("T{i}"), GREY);
         }
         for (i, (x, y)) in places.iter().enumerate() {
@@ -66,7 +103,8 @@ fn chains(board: &mut Board) -> Result<()> {
     let [left, right] = board.panels(["SEGMENTS", "CHAIN"]);
     let size = (22, 22);
     let places = [(2.5, 18.5), (6.5, 5.5), (11.5, 14.5), (15.5, 3.5), (19.5, 19.5)];
-    let vertex = |at| Vertex { position: stage::device(at, 0.5, size), values: stage::components(BLUE.with_opacity(0.45)) };
+    let vertex =
+        |at| Vertex { position: stage::device(at, 0.5, size), values: stage::components(BLUE.with_opacity(0.45)) };
     let chain: Vec<Vertex> = places.into_iter().map(vertex).collect();
     let pairs: Vec<Vertex> = chain.windows(2).flatten().copied().collect();
     let state = State { depth: Depth::OFF, blend: Blend::SourceOver, ..State::default() };
@@ -78,7 +116,12 @@ fn chains(board: &mut Board) -> Result<()> {
             for pair in vertices.chunks(2) {
                 let primitives = Primitives::new(pair, Topology::LineLoop);
                 let whole = whole_segment(&pipeline, &primitives, size)?;
-                stage::draw_primitives(&mut target, &pipeline, &Primitives::new(&whole, Topology::Points), &stage::carried);
+                stage::draw_primitives(
+                    &mut target,
+                    &pipeline,
+                    &Primitives::new(&whole, Topology::Points),
+                    &stage::carried,
+                );
             }
         } else {
             stage::draw_primitives(&mut target, &pipeline, &Primitives::new(vertices, topology), &stage::carried);
@@ -124,7 +167,10 @@ fn arm(shoulder: f32, elbow: f32) -> Scene {
         (camera::product(&stage::at(1.2, 0.0, 0.0), &turn(elbow)), vec![lower], vec![2]),
         (camera::product(&stage::at(1.0, 0.0, 0.0), &turn(elbow * 0.6)), vec![hand], vec![]),
     ];
-    scene.nodes = nodes.into_iter().map(|(transform, meshes, children)| Node { transform, meshes, children, ..Node::default() }).collect();
+    scene.nodes = nodes
+        .into_iter()
+        .map(|(transform, meshes, children)| Node { transform, meshes, children, ..Node::default() })
+        .collect();
     scene.roots = vec![0];
     scene.ambient = 0.35;
     scene.lights.push(rastrum::scene::Light::directional([0.4, 0.8, 1.0]));
@@ -171,8 +217,18 @@ fn stack(board: &mut Board) -> Result<()> {
         board.bar(rect, PALE);
         board.frame(rect, GREY);
         board.middle(rect.center(), 12.0, name, GREY);
-        board.segment(Point::new(rect.left - 6.0, rect.top - 6.0), Point::new(rect.right + 6.0, rect.bottom + 6.0), 4.0, RED);
-        board.segment(Point::new(rect.left - 6.0, rect.bottom + 6.0), Point::new(rect.right + 6.0, rect.top - 6.0), 4.0, RED);
+        board.segment(
+            Point::new(rect.left - 6.0, rect.top - 6.0),
+            Point::new(rect.right + 6.0, rect.bottom + 6.0),
+            4.0,
+            RED,
+        );
+        board.segment(
+            Point::new(rect.left - 6.0, rect.bottom + 6.0),
+            Point::new(rect.right + 6.0, rect.top - 6.0),
+            4.0,
+            RED,
+        );
     }
     Ok(())
 }
@@ -208,7 +264,12 @@ fn threads(board: &mut Board) -> Result<()> {
         for (i, band) in bands.iter().enumerate() {
             let y = i as f32 * rows as f32 / 128.0 * side.height();
             let height = (rows as f32 / 128.0 * side.height()).min(side.height() - y).max(0.0);
-            let strip = Rect::from_xywh(side.left, side.bottom + 12.0 + y * 0.55, side.width() * band.len() as f32 / 60.0, height * 0.55 - 1.0);
+            let strip = Rect::from_xywh(
+                side.left,
+                side.bottom + 12.0 + y * 0.55,
+                side.width() * band.len() as f32 / 60.0,
+                height * 0.55 - 1.0,
+            );
             board.bar(strip, [SKY, MINT, ROSE, AMBER][i % 4]);
             if y > 0.0 {
                 board.segment(Point::new(side.left, side.top + y), Point::new(side.right, side.top + y), 1.2, INK);
@@ -236,7 +297,11 @@ fn reyes(board: &mut Board) -> Result<()> {
         for y in 0..n {
             for x in 0..n {
                 let first = mesh.vertices.len() as u32;
-                let tint = if i == 1 { [random.within(0.3, 1.0), random.within(0.4, 1.0), random.within(0.5, 1.0), 1.0] } else { [0.35, 0.6, 0.95, 1.0] };
+                let tint = if i == 1 {
+                    [random.within(0.3, 1.0), random.within(0.4, 1.0), random.within(0.5, 1.0), 1.0]
+                } else {
+                    [0.35, 0.6, 0.95, 1.0]
+                };
                 for (dx, dy) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
                     let position = patch((x + dx) as f32 / n as f32, (y + dy) as f32 / n as f32);
                     mesh.vertices.push(rastrum::scene::MeshVertex { position, color: tint, ..Default::default() });

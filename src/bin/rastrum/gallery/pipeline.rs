@@ -10,15 +10,60 @@ use super::stage::{self, Triangle, Vertex};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(1, "Vertex, raster, fragment, framebuffer", "One triangle through four stages: its corners land on the screen, pixel centres inside are found, each gets its colour, and what is nearer than the blue triangle stays.", stages),
-    row(2, "Visibility: the nearest point wins", "Three triangles that cut through each other. The curves are their depths along the marked row; the lowest one shows.", visibility),
-    row(3, "Ray casting", "Image order: a ray through each pixel's centre finds the triangle it meets first (red dots). Right: the triangles of the last picture, cast ray by ray.", ray_casting),
-    row(4, "Normalised device coordinates", "The square from −1 to 1 is stretched onto the viewport, y turned over. The same triangle lands in two viewports of one target; what leaves the square is cut off.", ndc),
-    row(5, "Model, view, projection", "One house seen from above in each space: its own, the world's, the camera's (camera at the dot), and after the divide, where what is far has become small.", transforms),
-    row(6, "Perspective matrix", "The view volume from the side, and what it becomes: the near plane (green) goes to −1, the far plane (red) to +1. Equal steps in depth are squeezed together towards the far plane.", perspective),
-    row(7, "Parallel projection", "Equal boxes, one behind another: with perspective the far ones shrink; in parallel projection all stay the same size.", parallel),
-    row(8, "Vertex attributes", "The same triangle's position, colour, texture coordinates and depth, each interpolated and read for every fragment.", attributes),
-    row(9, "Gouraud shading", "Phong's formula at the vertices and linear between them (left) loses the highlight that the formula at each pixel gives (right).", gouraud),
+    row(
+        1,
+        "Vertex, raster, fragment, framebuffer",
+        "One triangle through four stages: its corners land on the screen, pixel centres inside are found, each gets its colour, and what is nearer than the blue triangle stays.",
+        stages,
+    ),
+    row(
+        2,
+        "Visibility: the nearest point wins",
+        "Three triangles that cut through each other. The curves are their depths along the marked row; the lowest one shows.",
+        visibility,
+    ),
+    row(
+        3,
+        "Ray casting",
+        "Image order: a ray through each pixel's centre finds the triangle it meets first (red dots). Right: the triangles of the last picture, cast ray by ray.",
+        ray_casting,
+    ),
+    row(
+        4,
+        "Normalised device coordinates",
+        "The square from −1 to 1 is stretched onto the viewport, y turned over. The same triangle lands in two viewports of one target; what leaves the square is cut off.",
+        ndc,
+    ),
+    row(
+        5,
+        "Model, view, projection",
+        "One house seen from above in each space: its own, the world's, the camera's (camera at the dot), and after the divide, where what is far has become small.",
+        transforms,
+    ),
+    row(
+        6,
+        "Perspective matrix",
+        "The view volume from the side, and what it becomes: the near plane (green) goes to −1, the far plane (red) to +1. Equal steps in depth are squeezed together towards the far plane.",
+        perspective,
+    ),
+    row(
+        7,
+        "Parallel projection",
+        "Equal boxes, one behind another: with perspective the far ones shrink; in parallel projection all stay the same size.",
+        parallel,
+    ),
+    row(
+        8,
+        "Vertex attributes",
+        "The same triangle's position, colour, texture coordinates and depth, each interpolated and read for every fragment.",
+        attributes,
+    ),
+    row(
+        9,
+        "Gouraud shading",
+        "Phong's formula at the vertices and linear between them (left) loses the highlight that the formula at each pixel gives (right).",
+        gouraud,
+    ),
 ];
 
 /// The first two triangles of the section, as vertices on a grid of 20 × 15.
@@ -64,7 +109,8 @@ fn crossing() -> [([(f32, f32, f32); 3], Color); 3] {
 
 fn crossing_vertices() -> Vec<Vertex> {
     let place = |(corners, color): ([(f32, f32, f32); 3], Color)| {
-        corners.map(|(x, y, z)| Vertex { position: stage::device((x, y), z, (48, 40)), values: stage::components(color) })
+        corners
+            .map(|(x, y, z)| Vertex { position: stage::device((x, y), z, (48, 40)), values: stage::components(color) })
     };
     crossing().into_iter().flat_map(place).collect()
 }
@@ -154,7 +200,12 @@ fn ndc(board: &mut Board) -> Result<()> {
     let views = [(2.0, 2.0, 16.0, 10.0), (12.0, 14.0, 14.0, 12.0)];
     for (x, y, width, height) in views {
         let viewport = Viewport { x, y, width, height, ..Viewport::new(28, 28) };
-        stage::draw(&mut target, &Pipeline { viewport, ..stage::pipeline(28, 28, State::default()) }, &clip, &stage::carried);
+        stage::draw(
+            &mut target,
+            &Pipeline { viewport, ..stage::pipeline(28, 28, State::default()) },
+            &clip,
+            &stage::carried,
+        );
     }
     let grid = board.zoomed(right, target.to_pixmap()?);
     for (x, y, w, h) in views {

@@ -13,13 +13,48 @@ use super::stage::{self, Triangle};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(39, "Scanline fill, even-odd", "Each scanline at y + ½ meets the star's edges (dots). Between the first and the second crossing is inside, between the second and the third outside; the middle of the star stays empty.", scanline),
-    row(40, "Edge-flip fill", "Edge by edge, all pixels to its right are inverted (the edge just done is red). When all edges are done, the pixels are those of the scanline fill.", edge_flip),
-    row(41, "Leftmost and rightmost pixel", "Walking the sides fills a table with the first (L) and the last (R) pixel of every row; the row is drawn between them.", leftmost),
-    row(42, "Flat-bottom and flat-top triangles", "A horizontal cut through the middle vertex makes v4 on the long side: above it a flat-bottom triangle (blue), below it a flat-top one (green), each with two straight slopes.", split),
-    row(43, "Outline by Bresenham, interior by scanline", "Dark cells are the outline's Bresenham pixels, light ones the interior. The outline reaches beyond the interior's rule, and no hole is left between them.", with_outline),
-    row(13, "Polygons to triangles", "A concave outline of 12 corners as 10 triangles, each in its colour, together exactly the polygon's pixels.", to_triangles),
-    row(14, "Curves to segments, surfaces to triangles", "The same curve as 2, 4 and 8 segments; and a ball of triangles. Twice the pieces, a quarter of the error.", to_segments),
+    row(
+        39,
+        "Scanline fill, even-odd",
+        "Each scanline at y + ½ meets the star's edges (dots). Between the first and the second crossing is inside, between the second and the third outside; the middle of the star stays empty.",
+        scanline,
+    ),
+    row(
+        40,
+        "Edge-flip fill",
+        "Edge by edge, all pixels to its right are inverted (the edge just done is red). When all edges are done, the pixels are those of the scanline fill.",
+        edge_flip,
+    ),
+    row(
+        41,
+        "Leftmost and rightmost pixel",
+        "Walking the sides fills a table with the first (L) and the last (R) pixel of every row; the row is drawn between them.",
+        leftmost,
+    ),
+    row(
+        42,
+        "Flat-bottom and flat-top triangles",
+        "A horizontal cut through the middle vertex makes v4 on the long side: above it a flat-bottom triangle (blue), below it a flat-top one (green), each with two straight slopes.",
+        split,
+    ),
+    row(
+        43,
+        "Outline by Bresenham, interior by scanline",
+        "Dark cells are the outline's Bresenham pixels, light ones the interior. The outline reaches beyond the interior's rule, and no hole is left between them.",
+        with_outline,
+    ),
+    row(
+        13,
+        "Polygons to triangles",
+        "A concave outline of 12 corners as 10 triangles, each in its colour, together exactly the polygon's pixels.",
+        to_triangles,
+    ),
+    row(
+        14,
+        "Curves to segments, surfaces to triangles",
+        "The same curve as 2, 4 and 8 segments; and a ball of triangles. Twice the pieces, a quarter of the error.",
+        to_segments,
+    ),
 ];
 
 fn star() -> Vec<Point> {
@@ -131,7 +166,9 @@ fn split(board: &mut Board) -> Result<()> {
     board.outline(&grid, &TRIANGLE, 1.6, INK);
     board.segment(grid.map(v4.0, v4.1), grid.map(b.0, b.1), 1.8, RED);
     board.dot(&grid, v4.0, v4.1, 5.0, RED);
-    for (i, (x, y)) in [(a.0 - 1.0, a.1), (b.0 + 1.0, b.1), (c.0 - 1.1, c.1), (v4.0 - 1.1, v4.1)].into_iter().enumerate() {
+    for (i, (x, y)) in
+        [(a.0 - 1.0, a.1), (b.0 + 1.0, b.1), (c.0 - 1.1, c.1), (v4.0 - 1.1, v4.1)].into_iter().enumerate()
+    {
         board.middle(grid.map(x, y), 13.0, &format!("V{}", i + 1), if i == 3 { RED } else { INK });
     }
     Ok(())
@@ -154,8 +191,18 @@ fn with_outline(board: &mut Board) -> Result<()> {
 fn to_triangles(board: &mut Board) -> Result<()> {
     let whole = board.whole();
     let shape: Vec<Point> = [
-        (2.5, 2.0), (9.0, 5.5), (12.0, 1.5), (15.5, 6.0), (24.0, 2.5), (20.0, 8.0), (25.0, 14.0), (17.0, 12.0),
-        (13.5, 16.0), (10.0, 11.0), (3.5, 15.0), (6.0, 8.5),
+        (2.5, 2.0),
+        (9.0, 5.5),
+        (12.0, 1.5),
+        (15.5, 6.0),
+        (24.0, 2.5),
+        (20.0, 8.0),
+        (25.0, 14.0),
+        (17.0, 12.0),
+        (13.5, 16.0),
+        (10.0, 11.0),
+        (3.5, 15.0),
+        (6.0, 8.5),
     ]
     .map(|(x, y)| Point::new(x, y))
     .to_vec();
@@ -181,7 +228,9 @@ fn to_segments(board: &mut Board) -> Result<()> {
     let [a, b, c, d] = [(0.05, 0.9), (0.1, -0.5), (0.95, 1.3), (0.95, 0.1)];
     for (i, (pieces, color)) in [(2, RED), (4, AMBER), (8, GREEN)].into_iter().enumerate() {
         let top = left.top + i as f32 * left.height() / 3.0;
-        let place = |(x, y): (f32, f32)| Point::new(left.left + x * left.width(), top + (y * 0.72 + 0.12) * left.height() / 3.0);
+        let place = |(x, y): (f32, f32)| {
+            Point::new(left.left + x * left.width(), top + (y * 0.72 + 0.12) * left.height() / 3.0)
+        };
         let mut path = Path::new();
         path.move_to(place(a)).cubic_to(place(b), place(c), place(d));
         board.canvas.stroke_path(&path, &Stroke::new(5.0), SKY);

@@ -12,20 +12,85 @@ use super::stage::{self, Triangle};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(121, "Coverage as alpha", "A thin line, aliased and with each pixel's coverage as its alpha. Numbers are percent: along each column they add up to the line's vertical width.", coverage_alpha),
-    row(122, "Box filter: the pixel's area", "The exact area of each pixel that lies inside the shape, in percent. The lower edge runs through pixel centres and leaves half of each pixel.", box_filter),
-    row(123, "Filter before sampling", "Rings that get finer outwards. Sampled at pixel centres the fine ones come back as false rings; averaged over the pixel's area first they fade to grey.", filter_first),
-    row(124, "Convolution is multiplication of spectra", "A signal (blue), a box kernel (amber) and their convolution (red) in space; below their spectra. The red spectrum is the product of the two others.", spectra),
-    row(125, "Jaggies and the sample count", "One edge with 1, 4, 16 and 64 samples a pixel, and how far it is from the exact area: the bars fall as the samples grow.", jaggies),
-    row(126, "Wagon wheel", "A wheel of eight spokes turns by 40° a frame, clockwise. Sharp frames (top) seem to turn back by 5°, as the marked spoke's neighbours show; with the shutter open (bottom) nothing seems to turn back.", wagon_wheel),
+    row(
+        121,
+        "Coverage as alpha",
+        "A thin line, aliased and with each pixel's coverage as its alpha. Numbers are percent: along each column they add up to the line's vertical width.",
+        coverage_alpha,
+    ),
+    row(
+        122,
+        "Box filter: the pixel's area",
+        "The exact area of each pixel that lies inside the shape, in percent. The lower edge runs through pixel centres and leaves half of each pixel.",
+        box_filter,
+    ),
+    row(
+        123,
+        "Filter before sampling",
+        "Rings that get finer outwards. Sampled at pixel centres the fine ones come back as false rings; averaged over the pixel's area first they fade to grey.",
+        filter_first,
+    ),
+    row(
+        124,
+        "Convolution is multiplication of spectra",
+        "A signal (blue), a box kernel (amber) and their convolution (red) in space; below their spectra. The red spectrum is the product of the two others.",
+        spectra,
+    ),
+    row(
+        125,
+        "Jaggies and the sample count",
+        "One edge with 1, 4, 16 and 64 samples a pixel, and how far it is from the exact area: the bars fall as the samples grow.",
+        jaggies,
+    ),
+    row(
+        126,
+        "Wagon wheel",
+        "A wheel of eight spokes turns by 40° a frame, clockwise. Sharp frames (top) seem to turn back by 5°, as the marked spoke's neighbours show; with the shutter open (bottom) nothing seems to turn back.",
+        wagon_wheel,
+    ),
     row(113, "SSAA", "The picture at four times the width and height, and the average of each 4 × 4 block.", ssaa),
-    row(114, "MSAA", "Left one sample, right four: the depth and coverage tests run for every sample, the shader once per pixel and triangle. Interiors are the same.", msaa),
-    row(115, "Sample positions", "Where the samples lie inside a pixel, in sixteenths: no two share a row or a column.", positions),
-    row(116, "CSAA", "16 coverage samples give an edge 17 shades, where MSAA 4× has 5; only 4 colours are kept. The curves: coverage of a half-plane against its true area.", csaa),
-    row(117, "EQAA", "Eight coverage samples, of which four (filled) keep a colour: edges as fine as MSAA 8× at half the memory.", eqaa),
-    row(118, "FXAA", "A filter on the finished picture: it finds edges by their luma and blends along them. Flat areas stay as they are.", fxaa),
-    row(119, "Temporal antialiasing", "The mean of 1, 4, 16 and 64 frames, each with the camera moved by a fraction of a pixel. It converges to supersampling.", temporal),
-    row(120, "Shared samples", "Samples on the sides of pixels serve both neighbours: six samples for two pixels instead of eight. Right: the edge as they give it.", shared),
+    row(
+        114,
+        "MSAA",
+        "Left one sample, right four: the depth and coverage tests run for every sample, the shader once per pixel and triangle. Interiors are the same.",
+        msaa,
+    ),
+    row(
+        115,
+        "Sample positions",
+        "Where the samples lie inside a pixel, in sixteenths: no two share a row or a column.",
+        positions,
+    ),
+    row(
+        116,
+        "CSAA",
+        "16 coverage samples give an edge 17 shades, where MSAA 4× has 5; only 4 colours are kept. The curves: coverage of a half-plane against its true area.",
+        csaa,
+    ),
+    row(
+        117,
+        "EQAA",
+        "Eight coverage samples, of which four (filled) keep a colour: edges as fine as MSAA 8× at half the memory.",
+        eqaa,
+    ),
+    row(
+        118,
+        "FXAA",
+        "A filter on the finished picture: it finds edges by their luma and blends along them. Flat areas stay as they are.",
+        fxaa,
+    ),
+    row(
+        119,
+        "Temporal antialiasing",
+        "The mean of 1, 4, 16 and 64 frames, each with the camera moved by a fraction of a pixel. It converges to supersampling.",
+        temporal,
+    ),
+    row(
+        120,
+        "Shared samples",
+        "Samples on the sides of pixels serve both neighbours: six samples for two pixels instead of eight. Right: the edge as they give it.",
+        shared,
+    ),
 ];
 
 /// A zoomed drawing on white.
@@ -117,15 +182,25 @@ fn spectra(board: &mut Board) -> Result<()> {
     const N: usize = 64;
     let signal: Vec<f64> = (0..N).map(|i| if (i / 4) % 3 == 0 || (30..44).contains(&i) { 1.0 } else { 0.1 }).collect();
     let kernel: Vec<f64> = (0..N).map(|i| if (i + 3) % N < 7 { 1.0 / 7.0 } else { 0.0 }).collect();
-    let blurred: Vec<f64> =
-        (0..N).map(|i| (0..N).map(|k| signal[(i + N - k) % N] * kernel[k]).sum()).collect();
-    let space = board.axes(Rect::from_xywh(10.0, 4.0, 620.0, 194.0), (0.0, N as f32), (0.0, 1.1), ("PLACE", "SIGNAL, KERNEL, CONVOLUTION"));
-    let steps = |values: &[f64]| -> Vec<(f32, f32)> { values.iter().enumerate().map(|(i, v)| (i as f32, *v as f32)).collect() };
+    let blurred: Vec<f64> = (0..N).map(|i| (0..N).map(|k| signal[(i + N - k) % N] * kernel[k]).sum()).collect();
+    let space = board.axes(
+        Rect::from_xywh(10.0, 4.0, 620.0, 194.0),
+        (0.0, N as f32),
+        (0.0, 1.1),
+        ("PLACE", "SIGNAL, KERNEL, CONVOLUTION"),
+    );
+    let steps =
+        |values: &[f64]| -> Vec<(f32, f32)> { values.iter().enumerate().map(|(i, v)| (i as f32, *v as f32)).collect() };
     let centred: Vec<f64> = (0..N).map(|i| kernel[(i + N / 2) % N] * 3.0).collect();
     board.curve(&space, steps(&signal), BLUE);
     board.curve(&space, steps(&centred), AMBER);
     board.curve(&space, steps(&blurred), RED);
-    let frequency = board.axes(Rect::from_xywh(10.0, 202.0, 620.0, 194.0), (0.0, N as f32 / 2.0), (0.0, 16.0), ("FREQUENCY", "SPECTRA"));
+    let frequency = board.axes(
+        Rect::from_xywh(10.0, 202.0, 620.0, 194.0),
+        (0.0, N as f32 / 2.0),
+        (0.0, 16.0),
+        ("FREQUENCY", "SPECTRA"),
+    );
     let (s, k, b) = (spectrum(&signal), spectrum(&kernel), spectrum(&blurred));
     let half = |values: &[f64], scale: f64| -> Vec<(f32, f32)> {
         values.iter().take(N / 2).enumerate().map(|(i, v)| (i as f32, (v * scale) as f32)).collect()
@@ -138,7 +213,11 @@ fn spectra(board: &mut Board) -> Result<()> {
 
 fn jaggies(board: &mut Board) -> Result<()> {
     let edge = |canvas: &mut Canvas<'_>, paint: Paint| {
-        canvas.fill_polygon(&[Point::new(0.0, 9.3), Point::new(14.0, 2.6), Point::new(14.0, 14.0), Point::new(0.0, 14.0)], FillRule::NonZero, paint);
+        canvas.fill_polygon(
+            &[Point::new(0.0, 9.3), Point::new(14.0, 2.6), Point::new(14.0, 14.0), Point::new(0.0, 14.0)],
+            FillRule::NonZero,
+            paint,
+        );
     };
     let exact = drawing(14, 12, Antialias::Exact, edge)?;
     let panels = board.tiles(4, &["1", "4", "16", "64 SAMPLES"]);
@@ -146,13 +225,19 @@ fn jaggies(board: &mut Board) -> Result<()> {
         let antialias = if n == 1 { Antialias::None } else { Antialias::Supersample(n) };
         let picture = drawing(14, 12, antialias, edge)?;
         let pixels = || (0..12).flat_map(|y| (0..14).map(move |x| (x, y)));
-        let error: f32 = pixels().map(|(x, y)| (covered(&picture, x, y) - covered(&exact, x, y)).abs()).sum::<f32>() / 14.0;
+        let error: f32 =
+            pixels().map(|(x, y)| (covered(&picture, x, y) - covered(&exact, x, y)).abs()).sum::<f32>() / 14.0;
         let top = Rect::from_xywh(rect.left, rect.top, rect.width(), 180.0);
         board.zoomed(top, picture);
         let base = 380.0;
         let height = (error * 500.0).max(1.0);
         board.bar(Rect::from_xywh(rect.left + 45.0, base - height, rect.width() - 90.0, height), RED);
-        board.middle(Point::new(rect.left + rect.width() / 2.0, base - height - 14.0), 11.0, &format!("{:.3}", error), INK);
+        board.middle(
+            Point::new(rect.left + rect.width() / 2.0, base - height - 14.0),
+            11.0,
+            &format!("{:.3}", error),
+            INK,
+        );
         if i == 0 {
             board.label(rect.left, 215.0, 11.0, "MEAN ERROR OF EDGE PIXELS", GREY);
         }
@@ -181,7 +266,8 @@ fn wagon_wheel(board: &mut Board) -> Result<()> {
         board.picture(Rect::from_xywh(left, 42.0, 116.0, 130.0), wheel(angle)?);
         // The spoke that is taken for the one marked first: 5° behind it each frame.
         let apparent = f64::from(-5.0 * frame as f32) * PI / 180.0;
-        let at = Point::new(left + 58.0 + (38.0 * libm::sin(apparent)) as f32, 107.0 - (38.0 * libm::cos(apparent)) as f32);
+        let at =
+            Point::new(left + 58.0 + (38.0 * libm::sin(apparent)) as f32, 107.0 - (38.0 * libm::cos(apparent)) as f32);
         board.canvas.fill_circle(at, 6.0, RED);
         let mut sum = Accumulation::new(100, 100)?;
         for step in 0..40 {
@@ -260,7 +346,8 @@ fn edge(samples: Samples) -> Result<Pixmap> {
 /// The share of samples above a line y = t + slope·x through the pixel, less the true area.
 fn half_plane(samples: Samples, t: f32) -> f32 {
     let slope = 0.3;
-    let above = samples.positions().iter().filter(|(x, y)| f32::from(*y) / 16.0 < t + slope * (f32::from(*x) / 16.0 - 0.5));
+    let above =
+        samples.positions().iter().filter(|(x, y)| f32::from(*y) / 16.0 < t + slope * (f32::from(*x) / 16.0 - 0.5));
     above.count() as f32 / samples.coverage() as f32
 }
 
@@ -269,7 +356,12 @@ fn csaa(board: &mut Board) -> Result<()> {
         board.label(16.0, top, 11.0, name, INK);
         board.picture(Rect::from_xywh(16.0, top + 16.0, 608.0, 72.0), edge(samples)?);
     }
-    let axes = board.axes(Rect::from_xywh(10.0, 206.0, 620.0, 190.0), (0.0, 1.0), (0.0, 1.0), ("PLACE OF THE EDGE", "COVERAGE"));
+    let axes = board.axes(
+        Rect::from_xywh(10.0, 206.0, 620.0, 190.0),
+        (0.0, 1.0),
+        (0.0, 1.0),
+        ("PLACE OF THE EDGE", "COVERAGE"),
+    );
     board.curve(&axes, (0..=200).map(|i| i as f32 / 200.0).map(|t| (t, half_plane(Samples::Msaa4, t))), AMBER);
     board.curve(&axes, (0..=200).map(|i| i as f32 / 200.0).map(|t| (t, half_plane(Samples::Csaa16x4, t))), BLUE);
     board.curve(&axes, [(0.0, 0.0), (1.0, 1.0)], GREY);
@@ -283,7 +375,9 @@ fn eqaa(board: &mut Board) -> Result<()> {
     let rect = Rect::from_xywh(16.0, 40.0, 230.0, 320.0);
     pixel(board, rect, Samples::Eqaa8x4);
     for (i, (name, samples)) in
-        [("MSAA 4X", Samples::Msaa4), ("EQAA 8/4", Samples::Eqaa8x4), ("MSAA 8X", Samples::Msaa8)].into_iter().enumerate()
+        [("MSAA 4X", Samples::Msaa4), ("EQAA 8/4", Samples::Eqaa8x4), ("MSAA 8X", Samples::Msaa8)]
+            .into_iter()
+            .enumerate()
     {
         let top = 40.0 + i as f32 * 112.0;
         board.label(262.0, top, 11.0, name, INK);
@@ -330,7 +424,12 @@ fn temporal(board: &mut Board) -> Result<()> {
         board.picture(Rect::from_xywh(rect.left, rect.top, rect.width(), 170.0), picture);
         let height = (error * 34.0).clamp(1.0, 130.0);
         board.bar(Rect::from_xywh(rect.left + 45.0, 382.0 - height, rect.width() - 90.0, height), RED);
-        board.middle(Point::new(rect.left + rect.width() / 2.0, 382.0 - height - 14.0), 11.0, &format!("{error:.2}"), INK);
+        board.middle(
+            Point::new(rect.left + rect.width() / 2.0, 382.0 - height - 14.0),
+            11.0,
+            &format!("{error:.2}"),
+            INK,
+        );
     }
     board.label(16.0, 212.0, 11.0, "MEAN DIFFERENCE FROM SSAA 8 X 8, IN LEVELS", GREY);
     Ok(())

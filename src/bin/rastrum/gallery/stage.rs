@@ -3,8 +3,8 @@
 use rastrum::glam::Mat4;
 use rastrum::scene::{Camera, Light, Material, Mesh, Scene, SceneAntialias, SceneSettings, SceneStats, render_picture};
 use rastrum::space::{
-    Blend, Counters, Depth, Fragment, Pipeline, Primitives, Samples, State, Target, VertexColor, VertexFn,
-    camera, pixel_fn, vertex_fn,
+    Blend, Counters, Depth, Fragment, Pipeline, Primitives, Samples, State, Target, VertexColor, VertexFn, camera,
+    pixel_fn, vertex_fn,
 };
 use rastrum::{Color, Pixmap, Rect, Result};
 
@@ -99,7 +99,12 @@ pub(crate) fn paper(width: u32, height: u32, samples: Samples) -> Result<Target>
 }
 
 /// What the pipeline draws of triangles with their colours.
-pub(crate) fn picture(vertices: &[Vertex], (width, height): (u32, u32), samples: Samples, state: State) -> Result<Pixmap> {
+pub(crate) fn picture(
+    vertices: &[Vertex],
+    (width, height): (u32, u32),
+    samples: Samples,
+    state: State,
+) -> Result<Pixmap> {
     let mut target = paper(width, height, samples)?;
     draw(&mut target, &pipeline(width, height, state), vertices, &carried);
     target.to_pixmap()
@@ -111,7 +116,11 @@ pub(crate) fn covered(triangle: Triangle, (width, height): (u32, u32), state: St
     let state = State { depth: Depth::OFF, blend: Blend::Replace, ..state };
     draw(&mut target, &pipeline(width, height, state), &flat(triangle, 0.5, Color::BLACK, (width, height)), &carried);
     let drawn = |x: u32, y: u32| target.pixel(x, y).is_some_and(|pixel| pixel[3] != 0);
-    Ok((0..height).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|(x, y)| drawn(*x, *y)).map(|(x, y)| (x as i32, y as i32)).collect())
+    Ok((0..height)
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .filter(|(x, y)| drawn(*x, *y))
+        .map(|(x, y)| (x as i32, y as i32))
+        .collect())
 }
 
 /// A material of one colour.
@@ -145,12 +154,23 @@ pub(crate) fn settings() -> SceneSettings {
     SceneSettings { threads: 1, background: PAPER, ..SceneSettings::default() }
 }
 
-pub(crate) fn view(scene: &Scene, camera: &Camera, (width, height): (u32, u32), settings: &SceneSettings) -> Result<(Pixmap, SceneStats)> {
+pub(crate) fn view(
+    scene: &Scene,
+    camera: &Camera,
+    (width, height): (u32, u32),
+    settings: &SceneSettings,
+) -> Result<(Pixmap, SceneStats)> {
     render_picture(scene, camera, width, height, settings)
 }
 
 /// Draws a scene as large as a rectangle of the board, with smooth edges.
-pub(crate) fn show(board: &mut Board, rect: Rect, scene: &Scene, camera: &Camera, settings: &SceneSettings) -> Result<SceneStats> {
+pub(crate) fn show(
+    board: &mut Board,
+    rect: Rect,
+    scene: &Scene,
+    camera: &Camera,
+    settings: &SceneSettings,
+) -> Result<SceneStats> {
     let smooth = SceneSettings { antialias: SceneAntialias::Samples(Samples::Msaa8), ..*settings };
     let (picture, stats) = view(scene, camera, (rect.width() as u32, rect.height() as u32), &smooth)?;
     board.picture(rect, picture);
@@ -175,4 +195,3 @@ impl Random {
         from + (to - from) * (bits / (1 << 24) as f32)
     }
 }
-

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use rastrum::glam::Mat4;
-use rastrum::scene::{AlphaMode, Camera, Fog, FogKind, Material, Mesh, MeshVertex, Node, Scene, SceneSettings, Shading};
+use rastrum::scene::{
+    AlphaMode, Camera, Fog, FogKind, Material, Mesh, MeshVertex, Node, Scene, SceneSettings, Shading,
+};
 use rastrum::space::{Address, Filter, Sampler, Texture, camera};
 use rastrum::{Color, Pixmap, Rect, Result};
 
@@ -12,11 +14,36 @@ use super::stage;
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(89, "Texturing", "A texture of 6 × 6 texels on a square larger than it: nearest and bilinear, wrapped, clamped and mirrored beyond its sides.", texturing),
-    row(90, "Textures of one, two and three dimensions", "A ramp looked up by u, a picture by u and v, and a block of 4 × 4 × 4 texels cut through at four heights.", dimensions),
-    row(91, "Moiré and mipmaps", "A checkered floor to the horizon. Without mipmaps its far end breaks up into moiré (left); with them it fades to grey (right).", mipmaps),
-    row(92, "Fog", "Linear, exponential and squared-exponential fog over the same row of boxes, and their curves.", fog),
-    row(95, "Billboards", "Trees are flat sprites that turn to the camera, cut out by their alpha: from both sides of the meadow they look the same.", billboards),
+    row(
+        89,
+        "Texturing",
+        "A texture of 6 × 6 texels on a square larger than it: nearest and bilinear, wrapped, clamped and mirrored beyond its sides.",
+        texturing,
+    ),
+    row(
+        90,
+        "Textures of one, two and three dimensions",
+        "A ramp looked up by u, a picture by u and v, and a block of 4 × 4 × 4 texels cut through at four heights.",
+        dimensions,
+    ),
+    row(
+        91,
+        "Moiré and mipmaps",
+        "A checkered floor to the horizon. Without mipmaps its far end breaks up into moiré (left); with them it fades to grey (right).",
+        mipmaps,
+    ),
+    row(
+        92,
+        "Fog",
+        "Linear, exponential and squared-exponential fog over the same row of boxes, and their curves.",
+        fog,
+    ),
+    row(
+        95,
+        "Billboards",
+        "Trees are flat sprites that turn to the camera, cut out by their alpha: from both sides of the meadow they look the same.",
+        billboards,
+    ),
 ];
 
 fn letters() -> Vec<u32> {
@@ -37,13 +64,18 @@ fn square(texture: Texture, beyond: f32) -> (Scene, Camera) {
         let to_uv = |v: f32| 0.5 + v * (0.5 + beyond);
         mesh.vertices.push(MeshVertex { position: [x, y, 0.0], uv: [to_uv(x), to_uv(-y)], ..MeshVertex::default() });
     }
-    let material = Material { shading: Shading::Unlit, color: [1.0; 4], texture: Some(Arc::new(texture)), ..Material::default() };
-    let camera = Camera { projection: rastrum::scene::Projection::Orthographic(2.0), ..Camera::look_at([0.0, 0.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0]) };
+    let material =
+        Material { shading: Shading::Unlit, color: [1.0; 4], texture: Some(Arc::new(texture)), ..Material::default() };
+    let camera = Camera {
+        projection: rastrum::scene::Projection::Orthographic(2.0),
+        ..Camera::look_at([0.0, 0.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0])
+    };
     (stage::scene(vec![(mesh, material, Mat4::IDENTITY)]), camera)
 }
 
 fn texturing(board: &mut Board) -> Result<()> {
-    let names = ["NEAREST, WRAP", "NEAREST, CLAMP", "NEAREST, MIRROR", "BILINEAR, WRAP", "BILINEAR, CLAMP", "BILINEAR, MIRROR"];
+    let names =
+        ["NEAREST, WRAP", "NEAREST, CLAMP", "NEAREST, MIRROR", "BILINEAR, WRAP", "BILINEAR, CLAMP", "BILINEAR, MIRROR"];
     let panels = board.tiles(3, &names);
     for (i, rect) in panels.into_iter().enumerate() {
         let filter = if i < 3 { Filter::Nearest } else { Filter::Bilinear };
@@ -76,7 +108,8 @@ fn dimensions(board: &mut Board) -> Result<()> {
     let cells = (0..4).flat_map(|z| (0..4).flat_map(move |y| (0..4).map(move |x| (x, y, z))));
     let block = Texture::new(4, 4, 4, cells.map(|(x, y, z)| texel(x, y, z)).collect(), Sampler::default())?;
     for z in 0..4 {
-        let rect = Rect::from_xywh(three.left + (z % 2) as f32 * 96.0, three.top + 60.0 + (z / 2) as f32 * 120.0, 90.0, 90.0);
+        let rect =
+            Rect::from_xywh(three.left + (z % 2) as f32 * 96.0, three.top + 60.0 + (z / 2) as f32 * 120.0, 90.0, 90.0);
         let mut data = Vec::new();
         for (x, y) in (0..4).flat_map(|y| (0..4).map(move |x| (x, y))) {
             data.extend(block.texel(0, x, y, z).unwrap_or(0).to_le_bytes());
@@ -96,7 +129,12 @@ fn mipmaps(board: &mut Board) -> Result<()> {
         for (x, z) in [(-40.0, 2.0), (40.0, 2.0), (40.0, -80.0), (-40.0, -80.0)] {
             mesh.vertices.push(MeshVertex { position: [x, 0.0, z], uv: [x * 0.35, z * 0.35], ..MeshVertex::default() });
         }
-        let material = Material { shading: Shading::Unlit, color: [1.0; 4], texture: Some(Arc::new(texture)), ..Material::default() };
+        let material = Material {
+            shading: Shading::Unlit,
+            color: [1.0; 4],
+            texture: Some(Arc::new(texture)),
+            ..Material::default()
+        };
         let scene = stage::scene(vec![(mesh, material, Mat4::IDENTITY)]);
         let camera = Camera::look_at([0.0, 1.4, 2.0], [0.0, 0.9, -2.0], [0.0, 1.0, 0.0]);
         let size = (rect.width() as u32 / 2, rect.height() as u32 / 2);
@@ -110,7 +148,11 @@ fn mipmaps(board: &mut Board) -> Result<()> {
 fn boxes() -> Scene {
     let part = |i: usize| {
         let color = [RED, AMBER, GREEN, BLUE, VIOLET][i % 5];
-        (Mesh::cuboid([-0.5, 0.0, -0.5], [0.5, 1.4, 0.5], 0), stage::matte(color), stage::at(-2.4 + i as f32 * 1.2, 0.0, -2.2 * i as f32))
+        (
+            Mesh::cuboid([-0.5, 0.0, -0.5], [0.5, 1.4, 0.5], 0),
+            stage::matte(color),
+            stage::at(-2.4 + i as f32 * 1.2, 0.0, -2.2 * i as f32),
+        )
     };
     let mut parts: Vec<_> = (0..6).map(part).collect();
     parts.push((stage::floor(30.0, 0.0), stage::matte(MINT), Mat4::IDENTITY));
@@ -120,7 +162,8 @@ fn boxes() -> Scene {
 fn fog(board: &mut Board) -> Result<()> {
     let panels = board.tiles(2, &["LINEAR", "EXP", "EXP2", "CURVES"]);
     let camera = Camera::look_at([-1.2, 1.6, 3.4], [0.5, 0.6, -3.0], [0.0, 1.0, 0.0]);
-    let kinds = [FogKind::Linear { start: 2.0, end: 16.0 }, FogKind::Exponential(0.14), FogKind::ExponentialSquared(0.11)];
+    let kinds =
+        [FogKind::Linear { start: 2.0, end: 16.0 }, FogKind::Exponential(0.14), FogKind::ExponentialSquared(0.11)];
     for (rect, kind) in panels.iter().zip(kinds) {
         let mut scene = boxes();
         scene.fog = Some(Fog { kind, color: [PAPER.r, PAPER.g, PAPER.b] });
@@ -152,7 +195,10 @@ fn tree() -> Result<Texture> {
 fn billboards(board: &mut Board) -> Result<()> {
     let [left, right] = board.panels(["FROM THE SOUTH", "FROM THE EAST"]);
     let texture = Arc::new(tree()?);
-    let mut scene = stage::scene(vec![(stage::floor(3.0, 0.0), stage::matte(MINT), Mat4::IDENTITY), (Mesh::cuboid([-0.3, 0.0, -0.3], [0.3, 0.6, 0.3], 0), stage::matte(RED), Mat4::IDENTITY)]);
+    let mut scene = stage::scene(vec![
+        (stage::floor(3.0, 0.0), stage::matte(MINT), Mat4::IDENTITY),
+        (Mesh::cuboid([-0.3, 0.0, -0.3], [0.3, 0.6, 0.3], 0), stage::matte(RED), Mat4::IDENTITY),
+    ]);
     let material = scene.add_material(Material {
         shading: Shading::Unlit,
         color: [1.0; 4],
@@ -167,7 +213,12 @@ fn billboards(board: &mut Board) -> Result<()> {
     scene.meshes.push(sprite);
     let mesh = scene.meshes.len() - 1;
     for (x, z) in [(-1.9, -1.6), (1.6, -1.9), (-1.2, 1.5), (2.0, 1.2), (0.4, -0.9)] {
-        scene.nodes.push(Node { transform: camera::translation([x, 0.0, z]), meshes: vec![mesh], billboard: true, ..Node::default() });
+        scene.nodes.push(Node {
+            transform: camera::translation([x, 0.0, z]),
+            meshes: vec![mesh],
+            billboard: true,
+            ..Node::default()
+        });
         scene.roots.push(scene.nodes.len() - 1);
     }
     for (rect, eye) in [(left, [0.0, 2.2, 6.4]), (right, [6.4, 2.2, 0.0])] {

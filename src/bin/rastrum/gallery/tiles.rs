@@ -4,7 +4,8 @@ use rastrum::glam::Mat4;
 use rastrum::scene::{Camera, Look, Mesh, Scene, SceneSettings, Shading};
 use rastrum::space::compress::{TileCode, tiled_index};
 use rastrum::space::{
-    Blend, ClipDepth, Compare, Cull, Depth, DepthFormat, Pipeline, Primitives, Samples, State, Target, VertexColor, camera,
+    Blend, ClipDepth, Compare, Cull, Depth, DepthFormat, Pipeline, Primitives, Samples, State, Target, VertexColor,
+    camera,
 };
 use rastrum::{Color, IntRect, Pixmap, Point, Rect, Result};
 
@@ -14,19 +15,84 @@ use super::stage::{self, Triangle, Vertex};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(60, "Zmax culling", "Layers drawn front to back. A tile that lies behind the farthest depth stored for it is skipped whole (blue): all but those along the border that still shows.", zmax),
-    row(61, "Zmin culling", "Layers drawn back to front. A tile that lies in front of the nearest stored depth needs no depth to be read: all of them (green) pass unread.", zmin),
-    row(62, "Buffer compression", "A depth buffer's tiles: cleared (white, 0 bytes), one value (green, 4), a plane with small differences (blue, 44), too varied (red, 256).", compression),
-    row(63, "Tiled texture layout", "Where texels lie in memory. In rows, a step down is a whole row away; in 4 × 4 tiles, neighbours both ways are mostly near.", layout),
-    row(65, "Binned: set-up and cull", "What becomes of each triangle before any bin sees it: kept (blue), no area (red), turned away (grey), off the screen (amber), between all centres (violet).", setup),
-    row(66, "Binned: coarse", "Bands of rows, and the numbers of the triangles that each lists: every band that a triangle touches.", coarse),
-    row(67, "Binned: fine", "Each band drawn on its own from its list, pulled apart on the left; pushed together they are the direct draw.", fine),
-    row(68, "Bit fields to lists", "A bit for each triangle (row) and band (column). Read along the bands, the bits become lists, in the order of submission.", bits),
-    row(69, "Visibility buffer", "First pass: which triangle each pixel sees (a colour for each number). Second pass: every pixel is shaded once, by its triangle.", visibility),
-    row(70, "G-buffer", "A material pass leaves colour, normal and depth for each pixel; light comes afterwards, from these alone.", g_buffer),
-    row(71, "Depth prepass", "How often each pixel is shaded. Left up to many times, as nearer triangles come later; right, with depths known beforehand, once.", prepass),
-    row(72, "Small triangles", "A ball of 8,192 triangles, most smaller than a pixel, and of 128: a colour for each triangle. Small ones are tested against the few centres that their box holds.", small),
-    row(73, "Reversed float depth", "Two walls at 9,000 and 9,010 with the near plane at 0.01. Forward depth gives both the same few values and they fight; reversed, floats are fine where distance needs it.", reversed),
+    row(
+        60,
+        "Zmax culling",
+        "Layers drawn front to back. A tile that lies behind the farthest depth stored for it is skipped whole (blue): all but those along the border that still shows.",
+        zmax,
+    ),
+    row(
+        61,
+        "Zmin culling",
+        "Layers drawn back to front. A tile that lies in front of the nearest stored depth needs no depth to be read: all of them (green) pass unread.",
+        zmin,
+    ),
+    row(
+        62,
+        "Buffer compression",
+        "A depth buffer's tiles: cleared (white, 0 bytes), one value (green, 4), a plane with small differences (blue, 44), too varied (red, 256).",
+        compression,
+    ),
+    row(
+        63,
+        "Tiled texture layout",
+        "Where texels lie in memory. In rows, a step down is a whole row away; in 4 × 4 tiles, neighbours both ways are mostly near.",
+        layout,
+    ),
+    row(
+        65,
+        "Binned: set-up and cull",
+        "What becomes of each triangle before any bin sees it: kept (blue), no area (red), turned away (grey), off the screen (amber), between all centres (violet).",
+        setup,
+    ),
+    row(
+        66,
+        "Binned: coarse",
+        "Bands of rows, and the numbers of the triangles that each lists: every band that a triangle touches.",
+        coarse,
+    ),
+    row(
+        67,
+        "Binned: fine",
+        "Each band drawn on its own from its list, pulled apart on the left; pushed together they are the direct draw.",
+        fine,
+    ),
+    row(
+        68,
+        "Bit fields to lists",
+        "A bit for each triangle (row) and band (column). Read along the bands, the bits become lists, in the order of submission.",
+        bits,
+    ),
+    row(
+        69,
+        "Visibility buffer",
+        "First pass: which triangle each pixel sees (a colour for each number). Second pass: every pixel is shaded once, by its triangle.",
+        visibility,
+    ),
+    row(
+        70,
+        "G-buffer",
+        "A material pass leaves colour, normal and depth for each pixel; light comes afterwards, from these alone.",
+        g_buffer,
+    ),
+    row(
+        71,
+        "Depth prepass",
+        "How often each pixel is shaded. Left up to many times, as nearer triangles come later; right, with depths known beforehand, once.",
+        prepass,
+    ),
+    row(
+        72,
+        "Small triangles",
+        "A ball of 8,192 triangles, most smaller than a pixel, and of 128: a colour for each triangle. Small ones are tested against the few centres that their box holds.",
+        small,
+    ),
+    row(
+        73,
+        "Reversed float depth",
+        "Two walls at 9,000 and 9,010 with the near plane at 0.01. Forward depth gives both the same few values and they fight; reversed, floats are fine where distance needs it.",
+        reversed,
+    ),
 ];
 
 /// Layers over all of a square of 128 at the given depths, drawn one by one: for each, what `count` takes of the tiles.
@@ -176,7 +242,12 @@ fn numbered() -> Vec<Vertex> {
     ];
     let colors = [SKY, MINT, ROSE, AMBER, VIOLET, RED];
     let depth = |i: usize| 0.9 - i as f32 * 0.1;
-    corners.into_iter().zip(colors).enumerate().flat_map(|(i, (t, color))| stage::flat(t, depth(i), color, (128, 128))).collect()
+    corners
+        .into_iter()
+        .zip(colors)
+        .enumerate()
+        .flat_map(|(i, (t, color))| stage::flat(t, depth(i), color, (128, 128)))
+        .collect()
 }
 
 /// The picture of the numbered triangles, and four bands with their lists.
@@ -201,7 +272,8 @@ fn coarse(board: &mut Board) -> Result<()> {
     let (picture, rows, bins) = bands()?;
     let grid = board.picture(left, picture);
     for (i, vertex) in numbered().chunks(3).enumerate() {
-        let middle = vertex.iter().fold((0.0, 0.0), |sum, v| (sum.0 + v.position[0] / 3.0, sum.1 + v.position[1] / 3.0));
+        let middle =
+            vertex.iter().fold((0.0, 0.0), |sum, v| (sum.0 + v.position[0] / 3.0, sum.1 + v.position[1] / 3.0));
         board.middle(grid.map((middle.0 + 1.0) * 64.0, (1.0 - middle.1) * 64.0), 14.0, &i.to_string(), INK);
     }
     for (i, list) in bins.iter().enumerate() {
@@ -296,7 +368,11 @@ fn still_life() -> (Scene, Camera) {
     let scene = stage::scene(vec![
         (stage::floor(2.2, -0.7), stage::matte(MINT), Mat4::IDENTITY),
         (Mesh::sphere(0.7, 40, 20, 0), stage::matte(RED), stage::at(-0.7, 0.0, 0.2)),
-        (Mesh::cuboid([-0.5, -0.7, -0.5], [0.5, 0.5, 0.5], 0), stage::matte(BLUE), camera::product(&stage::at(0.8, 0.0, -0.3), &camera::rotation([0.0, 1.0, 0.0], 0.6))),
+        (
+            Mesh::cuboid([-0.5, -0.7, -0.5], [0.5, 0.5, 0.5], 0),
+            stage::matte(BLUE),
+            camera::product(&stage::at(0.8, 0.0, -0.3), &camera::rotation([0.0, 1.0, 0.0], 0.6)),
+        ),
     ]);
     let camera = Camera { near: 2.0, far: 7.0, ..Camera::look_at([0.6, 1.8, 3.4], [0.0, -0.2, 0.0], [0.0, 1.0, 0.0]) };
     (scene, camera)
@@ -357,7 +433,12 @@ fn small(board: &mut Board) -> Result<()> {
     for (rect, columns, rows) in [(left, 64, 64), (right, 8, 8)] {
         let scene = stage::scene(vec![(Mesh::sphere(1.0, columns, rows, 0), stage::matte(BLUE), Mat4::IDENTITY)]);
         let camera = Camera::look_at([0.3, 0.7, 1.95], [0.0; 3], [0.0, 1.0, 0.0]);
-        let settings = SceneSettings { look: Look::Ids, cull: Some(Cull::Back), background: Color::TRANSPARENT, ..stage::settings() };
+        let settings = SceneSettings {
+            look: Look::Ids,
+            cull: Some(Cull::Back),
+            background: Color::TRANSPARENT,
+            ..stage::settings()
+        };
         let (ids, _) = stage::view(&scene, &camera, (64, 64), &settings)?;
         let mut data = Vec::new();
         for pixel in ids.data().as_chunks::<4>().0 {
@@ -388,8 +469,10 @@ fn reversed(board: &mut Board) -> Result<()> {
                 Vertex { position: at, values: stage::components(color) }
             })
         };
-        let list: Vec<Vertex> = wall(-0.9, 0.5, -9000.0, RED).into_iter().chain(wall(-0.5, 0.9, -9010.0, BLUE)).collect();
-        let mut pipeline: Pipeline = stage::pipeline(48, 48, State { depth: Depth::compare(compare), ..State::default() });
+        let list: Vec<Vertex> =
+            wall(-0.9, 0.5, -9000.0, RED).into_iter().chain(wall(-0.5, 0.9, -9010.0, BLUE)).collect();
+        let mut pipeline: Pipeline =
+            stage::pipeline(48, 48, State { depth: Depth::compare(compare), ..State::default() });
         pipeline.viewport.clip_depth = clip_depth;
         stage::draw_opaque(&mut target, &pipeline, &list);
         board.zoomed(rect, target.to_pixmap()?);

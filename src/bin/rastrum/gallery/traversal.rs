@@ -9,14 +9,54 @@ use super::triangles::{edge, inside, middle, oriented, sides, snap, top_left};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(53, "Visit every pixel", "The plain way, and the judge of the others: every pixel of the picture is tested, in reading order. Numbers are the order of visits, blue the pixels inside.", every),
-    row(54, "Bounding box", "Only the box of the corners is visited (numbered), still in reading order. Grey pixels were tested for nothing.", bounding_box),
-    row(55, "Backtrack", "Each row starts where the one above did and steps back to the left until it is outside. Almost nothing left of the triangle is visited.", backtrack),
-    row(56, "Zigzag", "Rows by turns from left to right and from right to left: no way back at the end of a row.", zigzag),
-    row(57, "Tiles", "4 × 4 tiles that meet the triangle, numbered in their order, pixels inside each tile in reading order. Pale tiles were rejected whole.", tiled),
-    row(58, "Pineda's walk", "One edge function, evaluated once, then by increments alone: a for each step to the right, b for each step down. Numbers are its value in pixels².", pineda),
-    row(59, "Tile against triangle", "For each edge the tile's corner farthest inside (dot) is tested. Outside of one edge: rejected (pale). Green tiles lie inside of all edges, amber ones are cut.", overlap),
-    row(64, "Conservative rasterization", "Blue: pixels whose centre is inside. Amber: pixels that the triangle touches anywhere, which conservative rasterization adds.", conservative),
+    row(
+        53,
+        "Visit every pixel",
+        "The plain way, and the judge of the others: every pixel of the picture is tested, in reading order. Numbers are the order of visits, blue the pixels inside.",
+        every,
+    ),
+    row(
+        54,
+        "Bounding box",
+        "Only the box of the corners is visited (numbered), still in reading order. Grey pixels were tested for nothing.",
+        bounding_box,
+    ),
+    row(
+        55,
+        "Backtrack",
+        "Each row starts where the one above did and steps back to the left until it is outside. Almost nothing left of the triangle is visited.",
+        backtrack,
+    ),
+    row(
+        56,
+        "Zigzag",
+        "Rows by turns from left to right and from right to left: no way back at the end of a row.",
+        zigzag,
+    ),
+    row(
+        57,
+        "Tiles",
+        "4 × 4 tiles that meet the triangle, numbered in their order, pixels inside each tile in reading order. Pale tiles were rejected whole.",
+        tiled,
+    ),
+    row(
+        58,
+        "Pineda's walk",
+        "One edge function, evaluated once, then by increments alone: a for each step to the right, b for each step down. Numbers are its value in pixels².",
+        pineda,
+    ),
+    row(
+        59,
+        "Tile against triangle",
+        "For each edge the tile's corner farthest inside (dot) is tested. Outside of one edge: rejected (pale). Green tiles lie inside of all edges, amber ones are cut.",
+        overlap,
+    ),
+    row(
+        64,
+        "Conservative rasterization",
+        "Blue: pixels whose centre is inside. Amber: pixels that the triangle touches anywhere, which conservative rasterization adds.",
+        conservative,
+    ),
 ];
 
 const COLUMNS: i32 = 18;
@@ -116,7 +156,10 @@ fn corners_of(tile: Pixel, side: i32) -> [((f32, f32), bool, bool); 3] {
     sides(oriented(snap(T))).map(|(p, q)| {
         let normal = (p.1 - q.1, q.0 - p.0);
         let far = |inner: bool| {
-            (if (normal.0 > 0) == inner { left + size } else { left }, if (normal.1 > 0) == inner { top + size } else { top })
+            (
+                if (normal.0 > 0) == inner { left + size } else { left },
+                if (normal.1 > 0) == inner { top + size } else { top },
+            )
         };
         let corner = far(true);
         ((corner.0 as f32 / 256.0, corner.1 as f32 / 256.0), edge(p, q, corner) >= 0, edge(p, q, far(false)) > 0)
@@ -134,7 +177,17 @@ fn tiled(board: &mut Board) -> Result<()> {
     for tile in tiles() {
         let taken = corners_of(tile, 4).iter().all(|(_, some, _)| *some);
         for pixel in (0..4).flat_map(|y| (0..4).map(move |x| (tile.0 * 4 + x, tile.1 * 4 + y))) {
-            board.cell(&grid, pixel, if !taken { PALE } else if hit(pixel) { SKY } else { Color::WHITE });
+            board.cell(
+                &grid,
+                pixel,
+                if !taken {
+                    PALE
+                } else if hit(pixel) {
+                    SKY
+                } else {
+                    Color::WHITE
+                },
+            );
             if taken {
                 visited.push(pixel);
             }
@@ -167,7 +220,17 @@ fn pineda(board: &mut Board) -> Result<()> {
         row += b;
     }
     for (pixel, value) in &values {
-        board.cell(&grid, *pixel, if hit(*pixel) { SKY } else if *value < 0 { ROSE } else { PALE });
+        board.cell(
+            &grid,
+            *pixel,
+            if hit(*pixel) {
+                SKY
+            } else if *value < 0 {
+                ROSE
+            } else {
+                PALE
+            },
+        );
     }
     board.lines(&grid);
     board.outline(&grid, &T, 1.6, BLUE);
@@ -195,7 +258,11 @@ fn overlap(board: &mut Board) -> Result<()> {
         } else {
             mix(AMBER, Color::WHITE, 0.4)
         };
-        board.cells(&grid, (0..side).flat_map(|y| (0..side).map(move |x| (tile.0 * side + x, tile.1 * side + y))), color);
+        board.cells(
+            &grid,
+            (0..side).flat_map(|y| (0..side).map(move |x| (tile.0 * side + x, tile.1 * side + y))),
+            color,
+        );
     }
     board.lines(&grid);
     board.outline(&grid, &T, 2.0, BLUE);
@@ -218,7 +285,11 @@ fn conservative(board: &mut Board) -> Result<()> {
     let size = (27, 17);
     let t = [(3.3, 13.7), (22.2, 2.4), (24.6, 10.1)];
     let grid = board.grid(whole, size.0, size.1);
-    board.cells(&grid, stage::covered(t, size, State { conservative: true, ..State::default() })?, mix(AMBER, Color::WHITE, 0.3));
+    board.cells(
+        &grid,
+        stage::covered(t, size, State { conservative: true, ..State::default() })?,
+        mix(AMBER, Color::WHITE, 0.3),
+    );
     board.cells(&grid, stage::covered(t, size, State::default())?, SKY);
     board.lines(&grid);
     board.centers(&grid);

@@ -8,15 +8,60 @@ use super::stage::{self, Triangle};
 use super::{Row, row};
 
 pub(super) const ROWS: &[Row] = &[
-    row(44, "Why triangles", "Every place in a triangle is one mixture of its corners (left). Four corners can be joined along either diagonal, and mean two surfaces (middle). Without area nothing is drawn (right).", why),
-    row(45, "Sampled at the centre", "The triangle (0, 0), (1, 0), (0, 1) meets the centre of pixel 0 with its long side only: the tie rule decides. Its other half owns the pixel's centre or not, never both.", center),
-    row(46, "Fixed-point positions", "Corners are rounded to a grid inside the pixel: 4 steps a pixel on the left, 256 on the right. The coarse grid moves the corners (red to blue), and a pixel changes.", fixed_point),
-    row(47, "Edge functions", "The value of one edge function at every centre, in units of pixels²: 0 on the edge's line, positive on the inner side, twice the area at the corner across.", edge_functions),
-    row(48, "Inside: all positive", "How many of the three edge functions are positive: each alone is a half-plane, and where all three are (green) lies the triangle.", all_positive),
-    row(49, "Three cross products", "From each corner along its side, and to the point: the turn is the same way round three times for the inner point (green), not for the outer one (red).", cross_products),
-    row(50, "McCool's tie rule", "For an edge a·x + b·y + c the signs of a and b decide whether points on it belong (green). With y down these are the edges on the left and on top.", tie_rule),
-    row(51, "Shared edges exactly once", "A fan whose edges pass through many pixel centres, each triangle in its colour. Every pixel is drawn once: the counts at the centres are all 1.", shared_edges),
-    row(52, "Ties by an off-screen point", "The other rule: an edge owns its points if a far point lies on its inner side. Left top-left, right off-screen; outlined pixels went to the other neighbour, still exactly one.", off_screen),
+    row(
+        44,
+        "Why triangles",
+        "Every place in a triangle is one mixture of its corners (left). Four corners can be joined along either diagonal, and mean two surfaces (middle). Without area nothing is drawn (right).",
+        why,
+    ),
+    row(
+        45,
+        "Sampled at the centre",
+        "The triangle (0, 0), (1, 0), (0, 1) meets the centre of pixel 0 with its long side only: the tie rule decides. Its other half owns the pixel's centre or not, never both.",
+        center,
+    ),
+    row(
+        46,
+        "Fixed-point positions",
+        "Corners are rounded to a grid inside the pixel: 4 steps a pixel on the left, 256 on the right. The coarse grid moves the corners (red to blue), and a pixel changes.",
+        fixed_point,
+    ),
+    row(
+        47,
+        "Edge functions",
+        "The value of one edge function at every centre, in units of pixels²: 0 on the edge's line, positive on the inner side, twice the area at the corner across.",
+        edge_functions,
+    ),
+    row(
+        48,
+        "Inside: all positive",
+        "How many of the three edge functions are positive: each alone is a half-plane, and where all three are (green) lies the triangle.",
+        all_positive,
+    ),
+    row(
+        49,
+        "Three cross products",
+        "From each corner along its side, and to the point: the turn is the same way round three times for the inner point (green), not for the outer one (red).",
+        cross_products,
+    ),
+    row(
+        50,
+        "McCool's tie rule",
+        "For an edge a·x + b·y + c the signs of a and b decide whether points on it belong (green). With y down these are the edges on the left and on top.",
+        tie_rule,
+    ),
+    row(
+        51,
+        "Shared edges exactly once",
+        "A fan whose edges pass through many pixel centres, each triangle in its colour. Every pixel is drawn once: the counts at the centres are all 1.",
+        shared_edges,
+    ),
+    row(
+        52,
+        "Ties by an off-screen point",
+        "The other rule: an edge owns its points if a far point lies on its inner side. Left top-left, right off-screen; outlined pixels went to the other neighbour, still exactly one.",
+        off_screen,
+    ),
 ];
 
 /// Places in 1/256 pixels.
@@ -69,7 +114,11 @@ fn why(board: &mut Board) -> Result<()> {
         let corners = [place(0.1, 0.75), place(0.45, 0.2), place(0.95, 0.3), place(0.6, 0.95)];
         let halves = if i == 0 { [[0, 1, 2], [0, 2, 3]] } else { [[0, 1, 3], [1, 2, 3]] };
         for (half, color) in halves.into_iter().zip(if i == 0 { [SKY, BLUE] } else { [MINT, GREEN] }) {
-            board.canvas.fill_polygon(&half.map(|k: usize| corners[k]), FillRule::NonZero, mix(color, Color::WHITE, 0.3));
+            board.canvas.fill_polygon(
+                &half.map(|k: usize| corners[k]),
+                FillRule::NonZero,
+                mix(color, Color::WHITE, 0.3),
+            );
         }
         board.canvas.stroke_polygon(&corners, &rastrum::Stroke::new(2.0), INK);
         let [a, b] = if i == 0 { [0, 2] } else { [1, 3] };
@@ -176,7 +225,9 @@ fn all_positive(board: &mut Board) -> Result<()> {
             board.segment(grid.map(first.0, first.1), grid.map(last.0, last.1), 1.6, INK);
         }
     }
-    for (x, y, n) in [(13.5, 9.5, "3"), (3.5, 3.5, "2"), (14.5, 16.5, "2"), (24.5, 4.5, "2"), (11.5, 0.9, "1"), (1.5, 17.0, "1")] {
+    for (x, y, n) in
+        [(13.5, 9.5, "3"), (3.5, 3.5, "2"), (14.5, 16.5, "2"), (24.5, 4.5, "2"), (11.5, 0.9, "1"), (1.5, 17.0, "1")]
+    {
         board.middle(grid.map(x, y), 16.0, n, INK);
     }
     Ok(())
@@ -210,7 +261,17 @@ fn tie_rule(board: &mut Board) -> Result<()> {
             let at = (column as i32, row as i32);
             let (cx, cy) = (column as f32 + 0.5, row as f32 + 0.5);
             let owns = a > 0 || (a == 0 && b > 0);
-            board.cell(&grid, at, if a == 0 && b == 0 { PALE } else if owns { MINT } else { ROSE });
+            board.cell(
+                &grid,
+                at,
+                if a == 0 && b == 0 {
+                    PALE
+                } else if owns {
+                    MINT
+                } else {
+                    ROSE
+                },
+            );
             if a == 0 && b == 0 {
                 board.middle(grid.map(cx, cy), 12.0, "NO EDGE", GREY);
                 continue;
@@ -250,7 +311,12 @@ fn shared_edges(board: &mut Board) -> Result<()> {
     let one = Color::from_rgba(1.0, 1.0, 1.0, 1.0 / 255.0);
     for (t, color) in fan().into_iter().zip(COLORS) {
         board.cells(&grid, stage::covered(t, size, State::default())?, color);
-        stage::draw(&mut counts, &stage::pipeline(size.0, size.1, state), &stage::flat(t, 0.5, one, size), &stage::carried);
+        stage::draw(
+            &mut counts,
+            &stage::pipeline(size.0, size.1, state),
+            &stage::flat(t, 0.5, one, size),
+            &stage::carried,
+        );
     }
     board.lines(&grid);
     for t in fan() {
