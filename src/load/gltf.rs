@@ -132,10 +132,15 @@ fn textures(
             WrappingMode::MirroredRepeat => Address::Mirror,
         };
         let own = texture.sampler();
-        let nearest = own.mag_filter() == Some(gltf::texture::MagFilter::Nearest);
+        let filter = match (own.mag_filter(), own.min_filter()) {
+            (Some(gltf::texture::MagFilter::Nearest), _) => Filter::Nearest,
+            // Smaller sizes are not asked for. Where the file does not say, they are the better choice.
+            (_, Some(gltf::texture::MinFilter::Linear | gltf::texture::MinFilter::Nearest)) => Filter::Bilinear,
+            _ => Filter::Trilinear,
+        };
         let sampler = Sampler {
             address: [address(own.wrap_s()), address(own.wrap_t()), Address::Clamp],
-            filter: if nearest { Filter::Nearest } else { Filter::Trilinear },
+            filter,
         };
         let loaded = bytes.and_then(|bytes| picture(&bytes, sampler));
         out.push(match loaded {

@@ -2,7 +2,9 @@
 
 mod args;
 mod completions;
+mod depth_file;
 mod draw;
+mod files;
 mod fonts;
 mod gallery;
 mod info;

@@ -23,7 +23,6 @@ mod tiles;
 mod traversal;
 mod triangles;
 
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -31,6 +30,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::files::write_whole;
 use crate::report::{self, Failure, Outcome};
 use board::Board;
 
@@ -217,19 +217,6 @@ fn draw(row: &Row, folder: &Path) -> rastrum::Result<()> {
     let mut board = Board::new()?;
     (row.draw)(&mut board)?;
     board.finish().save_png(folder.join(row.file()))
-}
-
-/// Writes a file beside its target and renames it.
-fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(format!(".{}.part", std::process::id()));
-    let beside = PathBuf::from(beside);
-    let written = std::fs::File::create(&beside).and_then(|mut file| file.write_all(bytes));
-    let renamed = written.and_then(|()| std::fs::rename(&beside, path));
-    if renamed.is_err() {
-        let _ = std::fs::remove_file(&beside);
-    }
-    renamed
 }
 
 #[cfg(test)]
