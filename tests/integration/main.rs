@@ -20,6 +20,8 @@ mod gallery;
 mod golden;
 #[cfg(feature = "cli")]
 mod hostile;
+#[cfg(feature = "mesh")]
+mod models;
 mod reference;
 mod scene_on_canvas;
 mod seeds_fragments;

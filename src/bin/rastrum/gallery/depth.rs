@@ -66,7 +66,7 @@ pub(super) const ROWS: &[Row] = &[
     row(
         111,
         "Polygon offset",
-        "A decal on a tilted wall: in the same plane it fights (left); moved towards the viewer by slope and units, all of it shows (right).",
+        "A decal on a tilted wall: in the same plane it fights, and mostly loses (left); moved towards the viewer by slope and units, all of it shows (right).",
         offset,
     ),
     row(
