@@ -9,6 +9,7 @@ mod accuracy;
 mod architecture;
 mod bad_input;
 mod canvas;
+mod canvas_pixels;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;
@@ -24,6 +25,7 @@ mod hostile;
 mod models;
 mod reference;
 mod scene_on_canvas;
+mod seeds_culling;
 mod seeds_fragments;
 mod seeds_interpolation;
 mod seeds_lines;

@@ -41,7 +41,7 @@ pub(super) fn page(sections: &[Section], drawn: impl Fn(&Row) -> bool) -> String
         "<header>\n<h1>How pixels are chosen</h1>\n<p class=\"soft\">{count} systems of rasterization, each drawn by the library itself. \
          The bytes are the same on every machine.</p>\n<nav>"
     );
-    let used = || sections.iter().filter(|section| section.rows().any(|row| drawn(row)));
+    let used = || sections.iter().filter(|section| section.rows().any(&drawn));
     for section in used() {
         let _ = write!(out, "<a href=\"#{}\">{}</a> ", section.id, section.title);
     }
