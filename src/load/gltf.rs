@@ -13,7 +13,16 @@ use crate::space::{Address, Filter, Sampler, Texture, Topology, camera};
 use crate::surface::Pixmap;
 
 pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
-    let file = gltf::Gltf::from_slice(bytes).map_err(|error| Error::Format(format!("not sound glTF: {error}")))?;
+    let unsound = |error: gltf::Error| Error::Format(format!("not sound glTF: {error}"));
+    // The crate's validation looks up the accessors of positions before it has looked whether they are there.
+    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(unsound)?;
+    let json = unchecked.document.as_json();
+    let accessors = json.accessors.len();
+    let mut used = json.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|part| part.attributes.values());
+    if let Some(missing) = used.find(|index| index.value() >= accessors) {
+        return Err(Error::Format(format!("not sound glTF: there is no accessor {}", missing.value())));
+    }
+    let file = gltf::Gltf::from_slice(bytes).map_err(unsound)?;
     let mut warnings = Vec::new();
     let buffers = buffers(&file, folder)?;
     let mut scene = Scene::new();
@@ -132,11 +141,13 @@ fn textures(
             WrappingMode::MirroredRepeat => Address::Mirror,
         };
         let own = texture.sampler();
-        let nearest = own.mag_filter() == Some(gltf::texture::MagFilter::Nearest);
-        let sampler = Sampler {
-            address: [address(own.wrap_s()), address(own.wrap_t()), Address::Clamp],
-            filter: if nearest { Filter::Nearest } else { Filter::Trilinear },
+        let filter = match (own.mag_filter(), own.min_filter()) {
+            (Some(gltf::texture::MagFilter::Nearest), _) => Filter::Nearest,
+            // Smaller sizes are not asked for. Where the file does not say, they are the better choice.
+            (_, Some(gltf::texture::MinFilter::Linear | gltf::texture::MinFilter::Nearest)) => Filter::Bilinear,
+            _ => Filter::Trilinear,
         };
+        let sampler = Sampler { address: [address(own.wrap_s()), address(own.wrap_t()), Address::Clamp], filter };
         let loaded = bytes.and_then(|bytes| picture(&bytes, sampler));
         out.push(match loaded {
             Ok(texture) => Some(texture),

@@ -9,7 +9,7 @@ use super::counters::Counters;
 use super::setup::{PixelBox, SampleExtent, double_area, sample_box};
 use super::state::{Cull, Fill, FrontFace, State};
 use super::target::TILE;
-use super::vertex::{ScreenVertex, ShadedVertices, Snap, Transform};
+use super::vertex::{FINE, ScreenVertex, ShadedVertices, Snap, Transform};
 
 /// What a [`DrawRef`] draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,7 +203,7 @@ impl Binning {
     /// A triangle of safe vertices: dropped, or listed for the bands that it reaches.
     #[inline(always)]
     fn triangle(&self, vertices: [u32; 3], screen: &[ScreenVertex; 3], primitive: u32, piece: u8, chunk: &mut Chunk) {
-        let bounds = sample_box(screen.map(|v| v.x), screen.map(|v| v.y), &self.extent);
+        let bounds = sample_box(screen.map(|v| v.x()), screen.map(|v| v.y()), &self.extent);
         if bounds.is_empty() {
             chunk.counters.no_samples += 1;
             return;
@@ -280,8 +280,8 @@ impl Binning {
         let half = (size * 128.0) as i32;
         let first = (shaded.screen.len() + chunk.screen.len()) as u32;
         let corners = [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(dx, dy)| ScreenVertex {
-            x: screen.x + dx,
-            y: screen.y + dy,
+            fine_x: (screen.x() + dx) << FINE,
+            fine_y: (screen.y() + dy) << FINE,
             ..screen
         });
         for corner in corners {
@@ -289,7 +289,7 @@ impl Binning {
             chunk.varyings.extend_from_slice(vertex.varyings.get(..shaded.stride).unwrap_or_default());
         }
         for (half, at) in [[0, 1, 2], [0, 2, 3]].into_iter().enumerate() {
-            let bounds = sample_box(at.map(|i: usize| corners[i].x), at.map(|i| corners[i].y), &self.extent);
+            let bounds = sample_box(at.map(|i: usize| corners[i].x()), at.map(|i| corners[i].y()), &self.extent);
             let bounds = bounds.intersect(&self.area);
             if !bounds.is_empty() {
                 let vertices = at.map(|i| first + i as u32);
@@ -335,7 +335,7 @@ impl Binning {
                 return;
             }
         }
-        let rows = [ends[0].y >> 8, ends[1].y >> 8];
+        let rows = [ends[0].y() >> 8, ends[1].y() >> 8];
         let (top, bottom) = (rows[0].min(rows[1]).max(self.area.top), (rows[0].max(rows[1]) + 1).min(self.area.bottom));
         if top >= bottom || self.area.is_empty() {
             chunk.counters.outside += 1;

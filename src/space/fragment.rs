@@ -92,7 +92,7 @@ pub fn unpack<S: Simd>(color: u32x8<S>) -> [f32x8<S>; 4] {
 #[derive(Clone, Copy)]
 pub(crate) struct Planes<'a> {
     pub(crate) triangle: BatchTriangle,
-    /// Varyings divided by w: values at the first vertex, steps right, steps down.
+    /// Varyings divided by w: values at the first vertex as snapped, steps right, steps down.
     pub(crate) value: [f32; MAX_VARYINGS],
     pub(crate) right: [f32; MAX_VARYINGS],
     pub(crate) down: [f32; MAX_VARYINGS],
@@ -115,7 +115,7 @@ impl<'a> Planes<'a> {
             for i in 0..4 {
                 let v0 = a[i] * w[0];
                 let (d1, d2) = (b[i] * w[1] - v0, c[i] * w[2] - v0);
-                value[i] = v0;
+                value[i] = v0 + (d1 * g.l1 + d2 * g.l2);
                 right[i] = d1 * g.x1 + d2 * g.x2;
                 down[i] = d1 * g.y1 + d2 * g.y2;
             }
@@ -264,8 +264,8 @@ impl<'a, S: Simd> Fragments<'a, S> {
     #[inline(always)]
     pub fn barycentrics(&self) -> [f32x8<S>; 3] {
         let g = &self.planes.triangle.gradients;
-        let u = plane_at([0.0, g.x1, g.y1], self.dx, self.dy);
-        let v = plane_at([0.0, g.x2, g.y2], self.dx, self.dy);
+        let u = plane_at([g.l1, g.x1, g.y1], self.dx, self.dy);
+        let v = plane_at([g.l2, g.x2, g.y2], self.dx, self.dy);
         [f32x8::splat(self.simd, 1.0) - u - v, u, v]
     }
 

@@ -62,14 +62,20 @@ pub(crate) enum Verdict {
     Unknown,
 }
 
-/// The least and the greatest key that a triangle has over the tile at (x, y).
+/// The least and the greatest key that a triangle has over `tiles` tiles side by side, the first at (x, y).
 #[inline(always)]
-pub(crate) fn range_over_tile(rule: &DepthRule, triangle: &BatchTriangle, x: i32, y: i32, inset: f32) -> (i32, i32) {
+pub(crate) fn range_over_tiles(
+    rule: &DepthRule,
+    triangle: &BatchTriangle,
+    (x, y): (i32, i32),
+    tiles: i32,
+    inset: f32,
+) -> (i32, i32) {
     let [c, gx, gy] = triangle.z;
-    let span = TILE as f32 - inset;
+    let (width, height) = ((tiles * TILE as i32) as f32 - inset, TILE as f32 - inset);
     let (x, y) = (x as f32, y as f32);
-    let (left, right) = (x + inset - triangle.gradients.x0, x + span - triangle.gradients.x0);
-    let (top, bottom) = (y + inset - triangle.gradients.y0, y + span - triangle.gradients.y0);
+    let (left, right) = (x + inset - triangle.gradients.x0, x + width - triangle.gradients.x0);
+    let (top, bottom) = (y + inset - triangle.gradients.y0, y + height - triangle.gradients.y0);
     let (near_x, far_x) = if gx < 0.0 { (right, left) } else { (left, right) };
     let (near_y, far_y) = if gy < 0.0 { (bottom, top) } else { (top, bottom) };
     let key = |dx: f32, dy: f32| {
@@ -77,6 +83,16 @@ pub(crate) fn range_over_tile(rule: &DepthRule, triangle: &BatchTriangle, x: i32
         rule.format.key(if z > 0.0 { if z < 1.0 { z } else { 1.0 } } else { 0.0 })
     };
     (key(near_x, near_y), key(far_x, far_y))
+}
+
+/// Whether no pixel of a row of tiles can pass, for what the triangle has over all of them.
+#[inline(always)]
+pub(crate) fn all_hidden(compare: Compare, range: (i32, i32), tiles: &[DepthBounds]) -> bool {
+    let merged = tiles.iter().fold(DepthBounds { nearest: i32::MAX, farthest: i32::MIN }, |all, one| DepthBounds {
+        nearest: all.nearest.min(one.nearest),
+        farthest: all.farthest.max(one.farthest),
+    });
+    verdict(compare, range, &merged) == Verdict::Hidden
 }
 
 /// Decides a tile.

@@ -4,7 +4,7 @@
 //! samples of one kind lie at the same fraction of their pixel, so that an edge function over pixels is a·X + b·Y + k with k the
 //! exact value at that fraction, divided by 256 and rounded down: its sign is the exact one.
 
-use super::vertex::ScreenVertex;
+use super::vertex::{FINE, ScreenVertex};
 
 /// An edge function over pixels: not negative at (X, Y) where the sample is inside, ties by the top-left rule included.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,10 +21,10 @@ impl Edge {
     /// The edge from `p` to `q` of a triangle that lies to its right on the screen (clockwise, y down).
     #[inline(always)]
     fn new(p: &ScreenVertex, q: &ScreenVertex, conservative: bool) -> Self {
-        let (a, b) = (p.y - q.y, q.x - p.x);
+        let (a, b) = (p.y() - q.y(), q.x() - p.x());
         // Top-left rule: a centre on an edge belongs to the triangle whose left or upper edge it is.
         let owns_ties = a > 0 || (a == 0 && b > 0);
-        let mut origin = -(i64::from(a) * i64::from(p.x) + i64::from(b) * i64::from(p.y)) - i64::from(!owns_ties);
+        let mut origin = -(i64::from(a) * i64::from(p.x()) + i64::from(b) * i64::from(p.y())) - i64::from(!owns_ties);
         if conservative {
             // The pixel's corner that is farthest inside, ties included.
             origin += (i64::from(a.abs()) + i64::from(b.abs())) * 128 + i64::from(!owns_ties);
@@ -103,8 +103,8 @@ pub(crate) fn sample_box(x: [i32; 3], y: [i32; 3], extent: &SampleExtent) -> Pix
 /// Twice the signed area in (1/256 pixel)²: positive where the vertices run clockwise on the screen.
 #[inline(always)]
 pub(crate) fn double_area(v: &[ScreenVertex; 3]) -> i64 {
-    let (x1, y1) = (i64::from(v[1].x - v[0].x), i64::from(v[1].y - v[0].y));
-    let (x2, y2) = (i64::from(v[2].x - v[0].x), i64::from(v[2].y - v[0].y));
+    let (x1, y1) = (i64::from(v[1].x() - v[0].x()), i64::from(v[1].y() - v[0].y()));
+    let (x2, y2) = (i64::from(v[2].x() - v[0].x()), i64::from(v[2].y() - v[0].y()));
     x1 * y2 - x2 * y1
 }
 
@@ -118,47 +118,72 @@ pub(crate) fn edges(v: &[ScreenVertex; 3], conservative: bool) -> [Edge; 3] {
     ]
 }
 
-/// How the weights of the second and third vertex grow over the screen: value(x, y) = v0 + (v1 − v0)·l1 + (v2 − v0)·l2 with
-/// l1 = x1·dx + y1·dy and so on, dx and dy in pixels from the first vertex.
+/// How the weights of the second and third vertex grow over the screen: value(x, y) = v0 + (v1 − v0)·w1 + (v2 − v0)·w2 with
+/// w1 = l1 + x1·dx + y1·dy and so on, dx and dy in pixels from the first vertex on the subpixel grid.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Gradients {
-    /// The first vertex in pixels: exact.
+    /// The first vertex in pixels, snapped: exact, so that steps to pixels' centres are, too.
     pub(crate) x0: f32,
     pub(crate) y0: f32,
     pub(crate) x1: f32,
     pub(crate) y1: f32,
     pub(crate) x2: f32,
     pub(crate) y2: f32,
+    /// The weights there: not 0, as planes go through the first vertex as it was.
+    pub(crate) l1: f32,
+    pub(crate) l2: f32,
 }
 
 impl Gradients {
-    /// Those of a triangle of twice the area `area` (in (1/256 pixel)², not 0).
+    /// Those of a triangle of twice the area `area` on the subpixel grid (in (1/256 pixel)², not 0), through its positions before snapping.
     #[inline(always)]
     pub(crate) fn of_triangle(v: &[ScreenVertex; 3], area: i64) -> Self {
-        let scale = 256.0 / area as f32;
-        let step = |d: i32| d as f32 * scale;
+        let p = v.map(|v| (i64::from(v.fine_x), i64::from(v.fine_y)));
+        // Sides of at most 130,000 pixels, 2^30.99 in these units: products fit, and so does their difference, at most the box's area.
+        let fine = (p[1].0 - p[0].0) * (p[2].1 - p[0].1) - (p[2].0 - p[0].0) * (p[1].1 - p[0].1);
+        let rounded = fine >> (2 * FINE);
+        let base = (v[0].x(), v[0].y());
+        if rounded <= area >> 1 || rounded >> 1 >= area {
+            // So thin that snapping made another triangle of it: planes through the one that is drawn.
+            return Self::new(v.map(|v| (i64::from(v.x()), i64::from(v.y()))), area, 256.0, base);
+        }
+        let gradients = Self::new(p, fine, (256 << FINE) as f32, base);
+        let rest = |snapped: i32, fine: i32| ((snapped << FINE) - fine) as f32 / (256 << FINE) as f32;
+        let (dx, dy) = (rest(base.0, v[0].fine_x), rest(base.1, v[0].fine_y));
+        let (l1, l2) = (gradients.x1 * dx + gradients.y1 * dy, gradients.x2 * dx + gradients.y2 * dy);
+        Self { l1, l2, ..gradients }
+    }
+
+    /// Those of positions in units of 1 / `unit` pixels, from a base in 1/256 pixels.
+    #[inline(always)]
+    fn new(p: [(i64, i64); 3], area: i64, unit: f32, base: (i32, i32)) -> Self {
+        let scale = unit / area as f32;
+        let step = |d: i64| d as f32 * scale;
         Self {
-            x0: v[0].x as f32 / 256.0,
-            y0: v[0].y as f32 / 256.0,
-            x1: step(v[2].y - v[0].y),
-            y1: step(v[0].x - v[2].x),
-            x2: step(v[0].y - v[1].y),
-            y2: step(v[1].x - v[0].x),
+            x0: base.0 as f32 / 256.0,
+            y0: base.1 as f32 / 256.0,
+            x1: step(p[2].1 - p[0].1),
+            y1: step(p[0].0 - p[2].0),
+            x2: step(p[0].1 - p[1].1),
+            y2: step(p[1].0 - p[0].0),
+            l1: 0.0,
+            l2: 0.0,
         }
     }
 
     /// Those of a line: the weight of the second vertex grows along it alone.
     pub(crate) fn of_line(a: &ScreenVertex, b: &ScreenVertex) -> Self {
-        let (dx, dy) = ((b.x - a.x) as f32 / 256.0, (b.y - a.y) as f32 / 256.0);
+        let (dx, dy) = ((b.x() - a.x()) as f32 / 256.0, (b.y() - a.y()) as f32 / 256.0);
         let length = dx * dx + dy * dy;
         let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
-        Self { x0: a.x as f32 / 256.0, y0: a.y as f32 / 256.0, x1: dx * scale, y1: dy * scale, x2: 0.0, y2: 0.0 }
+        let (x0, y0) = (a.x() as f32 / 256.0, a.y() as f32 / 256.0);
+        Self { x0, y0, x1: dx * scale, y1: dy * scale, ..Self::default() }
     }
 
-    /// A value at the three vertices as its value at the first and its steps right and down.
+    /// A value at the three vertices as its value at the base and its steps right and down.
     #[inline(always)]
     pub(crate) fn plane(&self, v0: f32, v1: f32, v2: f32) -> [f32; 3] {
         let (d1, d2) = (v1 - v0, v2 - v0);
-        [v0, d1 * self.x1 + d2 * self.x2, d1 * self.y1 + d2 * self.y2]
+        [v0 + (d1 * self.l1 + d2 * self.l2), d1 * self.x1 + d2 * self.x2, d1 * self.y1 + d2 * self.y2]
     }
 }

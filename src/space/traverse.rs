@@ -17,6 +17,9 @@ use super::test::{Tests, depth_keys, depth_passes, lane_offsets, test_group};
 use super::vertex::ScreenVertex;
 use crate::num::level::{SimdLevel, dispatch};
 
+/// Tiles side by side that are asked at once whether they hide a triangle.
+const RUN: i32 = 16;
+
 /// What a flush is given: the batch, its vertices, where to draw, and counters.
 pub(crate) type Flush<'f> = &'f mut dyn FnMut(&Batch, Vertices<'_>, &mut BandMut<'_>, &mut Counters);
 
@@ -103,7 +106,7 @@ impl Walk<'_, '_, '_> {
             area = -area;
         }
         let extent = &binning.extent;
-        let whole = setup::sample_box(v.map(|v| v.x), v.map(|v| v.y), extent).intersect(&binning.area);
+        let whole = setup::sample_box(v.map(|v| v.x()), v.map(|v| v.y()), extent).intersect(&binning.area);
         let bounds = whole.intersect(&self.area);
         if bounds.is_empty() || area == 0 {
             return;
@@ -282,8 +285,26 @@ impl Walk<'_, '_, '_> {
                 continue;
             }
             let rows = (bounds.top.max(y) - y, bounds.bottom.min(y + 8) - y);
-            for tile_x in (left >> 3) as i32..=(right >> 3) as i32 {
+            let (first, last) = ((left >> 3) as i32, (right >> 3) as i32);
+            let row = (y as usize / TILE - self.band.first) * self.band.tiles_x;
+            let (mut next, mut checked) = (first, first);
+            while next <= last {
+                let tile_x = next;
                 let x = tile_x << 3;
+                if hierarchical && tile_x >= checked {
+                    // Many tiles at once: what lies behind a wall costs one test for sixteen of them.
+                    let tiles = (last + 1 - tile_x).min(RUN);
+                    checked = tile_x + tiles;
+                    let range = hiz::range_over_tiles(&tests.depth, &prepared, (x, y), tiles, inset);
+                    let bounds = self.band.bounds.get(row + tile_x as usize..row + checked as usize);
+                    if bounds.is_some_and(|bounds| hiz::all_hidden(tests.depth.compare, range, bounds)) {
+                        self.counters.tiles += tiles as u64;
+                        self.counters.tiles_hidden += tiles as u64;
+                        next = checked;
+                        continue;
+                    }
+                }
+                next += 1;
                 self.counters.tiles += 1;
                 let mut crossing = [false; 3];
                 let mut outside = false;
@@ -301,11 +322,11 @@ impl Walk<'_, '_, '_> {
                 let whole = rows == (0, 8) && x >= bounds.left && x + 8 <= bounds.right;
                 let full = whole && crossing == [false; 3];
                 self.counters.tiles_accepted += u64::from(full);
-                let index = (y as usize / TILE - self.band.first) * self.band.tiles_x + x as usize / TILE;
+                let index = row + tile_x as usize;
                 let mut in_front = false;
                 let mut range = (i32::MIN, i32::MAX);
                 if hierarchical {
-                    range = hiz::range_over_tile(&tests.depth, &prepared, x, y, inset);
+                    range = hiz::range_over_tiles(&tests.depth, &prepared, (x, y), 1, inset);
                     let Some(bounds) = self.band.bounds.get(index) else { continue };
                     match hiz::verdict(tests.depth.compare, range, bounds) {
                         Verdict::Hidden => {
@@ -516,8 +537,8 @@ impl Walk<'_, '_, '_> {
             inverse_w: gradients.plane(a.inverse_w, b.inverse_w, a.inverse_w),
         };
         let samples = self.band.samples.coverage();
-        let (x0, y0) = (i64::from(a.x >> 8), i64::from(a.y >> 8));
-        let (dx, dy) = (i64::from(b.x >> 8) - x0, i64::from(b.y >> 8) - y0);
+        let (x0, y0) = (i64::from(a.x() >> 8), i64::from(a.y() >> 8));
+        let (dx, dy) = (i64::from(b.x() >> 8) - x0, i64::from(b.y() >> 8) - y0);
         let (long, short) = (dx.abs().max(dy.abs()), dx.abs().min(dy.abs()));
         let steep = dy.abs() > dx.abs();
         // Only the steps whose pixel can be inside the area: a line may be 65,000 pixels long, a band is 8 rows.

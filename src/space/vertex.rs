@@ -157,7 +157,7 @@ impl Transform {
             return ScreenVertex::UNSAFE;
         }
         let z = z * inverse_w * self.depth_scale + self.depth_offset;
-        ScreenVertex { x: snap.apply(sx), y: snap.apply(sy), z, inverse_w }
+        ScreenVertex { fine_x: snap.apply(sx), fine_y: snap.apply(sy), z, inverse_w }
     }
 }
 
@@ -174,19 +174,31 @@ impl Snap {
         Self { scale: (1 << bits) as f32 / 256.0, shift: 8 - bits }
     }
 
-    /// A position in pixels to 24.8, rounded to nearest of the grid.
+    /// A position in pixels, at most [`GUARD`] and a point's size from 0, to 18.14: rounded to nearest of the grid, and six bits of what
+    /// it was before; see [`ScreenVertex`].
     #[inline(always)]
     fn apply(self, position: f32) -> i32 {
-        fixed::from_f32(position * self.scale) << self.shift
+        let snapped = fixed::from_f32(position * self.scale) << (self.shift + FINE);
+        if self.shift != 0 {
+            return snapped;
+        }
+        let rest = fixed::from_f64(f64::from(position) * f64::from(1 << FINE)) - snapped;
+        snapped + rest.clamp(-(1 << (FINE - 1)), (1 << (FINE - 1)) - 1)
     }
 }
 
+/// Bits of a position beyond 24.8.
+pub(crate) const FINE: u32 = 6;
+
 /// A vertex on the screen.
+///
+/// Coverage is decided by positions on the subpixel grid, while depths and varyings are planes through the positions as they were: on steep
+/// triangles the half of 1/256 pixel between them would show in the depths' sixth digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ScreenVertex {
-    /// Device position, 24.8.
-    pub(crate) x: i32,
-    pub(crate) y: i32,
+    /// Device position, 18.14: the nearest multiple of 64 is the snapped one.
+    pub(crate) fine_x: i32,
+    pub(crate) fine_y: i32,
     /// Depth in the viewport's range.
     pub(crate) z: f32,
     pub(crate) inverse_w: f32,
@@ -194,11 +206,23 @@ pub(crate) struct ScreenVertex {
 
 impl ScreenVertex {
     /// Stands for a vertex that has to be clipped first.
-    pub(crate) const UNSAFE: Self = Self { x: i32::MIN, y: 0, z: 0.0, inverse_w: 0.0 };
+    pub(crate) const UNSAFE: Self = Self { fine_x: i32::MIN, fine_y: 0, z: 0.0, inverse_w: 0.0 };
+
+    /// The snapped x, 24.8.
+    #[inline(always)]
+    pub(crate) fn x(&self) -> i32 {
+        (self.fine_x + (1 << (FINE - 1))) >> FINE
+    }
+
+    /// The snapped y, 24.8.
+    #[inline(always)]
+    pub(crate) fn y(&self) -> i32 {
+        (self.fine_y + (1 << (FINE - 1))) >> FINE
+    }
 
     #[inline(always)]
     pub(crate) fn is_unsafe(&self) -> bool {
-        self.x == i32::MIN
+        self.fine_x == i32::MIN
     }
 }
 

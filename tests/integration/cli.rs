@@ -525,3 +525,26 @@ fn mesh_frames_numbers_and_refuses() {
     assert_failure(&folder.run(&["mesh", "other.txt", "-o", "out.png"]), "not a model");
     assert_failure(&folder.run(&["mesh", "square.obj", "-o", "out.png", "--camera", "3"]), "no camera 3");
 }
+
+#[test]
+fn mesh_names_its_picture_and_writes_depths() {
+    let folder = Folder::new();
+    folder.write("square.obj", SQUARE).write("other.obj", SQUARE);
+    let eye = ["mesh", "square.obj", "--size", "9x7", "--eye", "0,0,4", "--at", "0,0,0", "--near", "2", "--far", "6"];
+    for name in ["d.npy", "d.pfm", "d.raw"] {
+        assert_success(&folder.run(&[&eye[..], &["--depth-out", name]].concat()));
+    }
+    assert_eq!((folder.read("square.png").width(), folder.read("square.png").height()), (9, 7));
+    let raw = fs::read(folder.0.join("d.raw")).unwrap();
+    let depths: Vec<f32> = raw.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    // z' at a distance of 4 between 2 and 6, as 0 to 1: f (z - n) / (z (f - n)).
+    assert_eq!((depths.len(), depths[0]), (63, 1.0));
+    assert!((depths[3 * 9 + 4] - 0.75).abs() < 1e-6, "{depths:?}");
+    let npy = fs::read(folder.0.join("d.npy")).unwrap();
+    assert!(npy.ends_with(&raw) && text(&npy[10..80]).contains("'shape': (7, 9)"));
+    let pfm = fs::read(folder.0.join("d.pfm")).unwrap();
+    assert!(pfm.starts_with(b"Pf\n9 7\n-1.0\n") && pfm.ends_with(&raw[..36]));
+    assert_failure(&folder.run(&["mesh", "square.obj", "other.obj"]), "-o");
+    assert_failure(&folder.run(&["mesh", "square.obj", "--depth-out", "gone/d.npy"]), "gone/d.npy");
+    assert!(!folder.has("other.png"));
+}

@@ -9,17 +9,23 @@ mod accuracy;
 mod architecture;
 mod bad_input;
 mod canvas;
+mod canvas_pixels;
 #[cfg(feature = "cli")]
 mod cli;
 mod determinism;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod fixtures;
+#[cfg(feature = "cli")]
+mod gallery;
 #[cfg(all(feature = "svg", feature = "codec"))]
 mod golden;
 #[cfg(feature = "cli")]
 mod hostile;
+#[cfg(feature = "mesh")]
+mod models;
 mod reference;
 mod scene_on_canvas;
+mod seeds_culling;
 mod seeds_fragments;
 mod seeds_interpolation;
 mod seeds_lines;

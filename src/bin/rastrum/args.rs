@@ -13,7 +13,7 @@ use rastrum::{Antialias, Color};
     name = "rastrum",
     version,
     about,
-    after_help = "Exit codes: 0 done; 1 some of several inputs failed; 2 a usage, input or output error.\n\n\
+    after_help = "Exit codes: 0 done; 1 some of several inputs or pictures failed; 2 a usage, input or output error.\n\n\
                   Try `rastrum render --help` for options and examples."
 )]
 pub(crate) struct Arguments {
@@ -25,6 +25,7 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     Render(Box<RenderArguments>),
     Mesh(Box<crate::mesh::MeshArguments>),
+    Gallery(crate::gallery::GalleryArguments),
     #[command(hide = true)]
     Worker(Box<RenderArguments>),
     Info(InfoArguments),

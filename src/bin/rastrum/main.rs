@@ -2,8 +2,11 @@
 
 mod args;
 mod completions;
+mod depth_file;
 mod draw;
+mod files;
 mod fonts;
+mod gallery;
 mod info;
 mod json;
 mod man;
@@ -42,6 +45,7 @@ fn run(arguments: Arguments) -> Result<Outcome, Failure> {
     match arguments.command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),
+        Command::Gallery(arguments) => gallery::run(&arguments),
         Command::Worker(arguments) => worker::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),

@@ -8,21 +8,24 @@ use rastrum::glam::Mat4;
 use rastrum::load::Model;
 use rastrum::scene::{
     Aabb, Camera, Fog, FogKind, Light, LightKind, Look, Material, Mesh, MeshVertex, Node, Projection, Scene,
-    SceneAntialias, SceneSettings, SceneStats, Shading, render_picture,
+    SceneAntialias, SceneSettings, SceneStats, Shading, draw_scene, render_picture,
 };
-use rastrum::space::{Cull, Fill, Samples, Topology, camera};
+use rastrum::space::{Cull, Fill, Samples, Target, Topology, Viewport, camera};
 use rastrum::{Color, Pixmap};
 
 use crate::args::Timings;
+use crate::depth_file;
+use crate::files::write_whole;
 use crate::json;
 use crate::report::{self, Failure, Outcome};
 
 const EXAMPLES: &str = "\
 Examples:
-  rastrum mesh part.stl -o part.png                     framed by itself, seen from the front, right and above
+  rastrum mesh part.stl                                 writes part.png: framed by itself, from the front, right and above
   rastrum mesh car.glb -o car.png --view left --aa msaa4 --background FFFFFF
   rastrum mesh a.obj b.ply -o both.png --eye 3,2,5 --at 0,0,0 --fov 40
   rastrum mesh head.obj -o turn.png --turntable 36      turn-000.png to turn-035.png
+  rastrum mesh scan.ply --shading depth --depth-out scan.npy
   rastrum mesh scene.gltf --info";
 
 /// Draw 3D models (GLB, glTF, OBJ, STL, PLY) as PNG.
@@ -35,9 +38,15 @@ pub(crate) struct MeshArguments {
     #[arg(required = true, value_name = "MODEL")]
     models: Vec<PathBuf>,
 
-    /// Where the picture goes: a file, or - for standard output.
-    #[arg(short, long, value_name = "OUT", required_unless_present = "info")]
+    /// Where the picture goes: a file, or - for standard output. Default: beside the only model, ending in .png.
+    #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
+
+    /// Write depths, too, as 32-bit floats in rows from the top: 0 at the near plane, 1 at the far plane and where nothing is, not linear in
+    /// distance unless --ortho. A name that ends in .npy makes a NumPy array, .pfm a PFM picture, any other the floats alone, little
+    /// endian. Without antialiasing, whatever --aa is.
+    #[arg(long, value_name = "FILE", conflicts_with = "turntable")]
+    depth_out: Option<PathBuf>,
 
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
@@ -273,7 +282,13 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<Outcome, Failure> {
     if arguments.info {
         report::print(text.as_bytes())?;
     }
-    let Some(output) = &arguments.output else { return Ok(Outcome::Done) };
+    let output = match (&arguments.output, arguments.models.as_slice()) {
+        (Some(output), _) => output.clone(),
+        (None, _) if arguments.info => return Ok(Outcome::Done),
+        (None, [model]) => model.with_extension("png"),
+        (None, _) => return Err(Failure::new("several models make one picture; name it with -o FILE")),
+    };
+    let output = &output;
     let bounds = scene.bounds();
     prepare(&mut scene, arguments, &bounds);
     let settings = settings(arguments);
@@ -295,6 +310,9 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<Outcome, Failure> {
         let start = Instant::now();
         let path = if arguments.turntable.is_some() { numbered(output, frame) } else { output.clone() };
         save(&picture, &path)?;
+        if let Some(path) = &arguments.depth_out {
+            save_depths(&scene, &camera, arguments, &settings, path)?;
+        }
         encoding += start.elapsed().as_secs_f64() * 1e3;
     }
     if arguments.timings.is_some() {
@@ -592,6 +610,22 @@ fn numbered(output: &Path, frame: u32) -> PathBuf {
     let stem = output.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let ending = output.extension().map_or_else(|| "png".to_owned(), |e| e.to_string_lossy().into_owned());
     output.with_file_name(format!("{stem}-{frame:03}.{ending}"))
+}
+
+/// Draws the scene's depths, and writes them.
+fn save_depths(
+    scene: &Scene,
+    camera: &Camera,
+    arguments: &MeshArguments,
+    settings: &SceneSettings,
+    path: &Path,
+) -> Result<(), Failure> {
+    let (width, height) = arguments.size;
+    let mut target = Target::new(width, height).map_err(|error| Failure::new(error.to_string()))?;
+    draw_scene(scene, camera, &mut target, &Viewport::new(width, height), settings)
+        .map_err(|error| Failure::new(error.to_string()))?;
+    let bytes = depth_file::encode(path, width, height, &target.depths());
+    write_whole(path, &bytes).map_err(|error| Failure::new(format!("{}: {error}", path.display())))
 }
 
 fn save(picture: &Pixmap, path: &Path) -> Result<(), Failure> {
