@@ -210,7 +210,9 @@ impl EdgeBins {
             open_right,
             #[inline(always)]
             |edge| {
-                if u32::try_from(points.len() + 2).is_ok() {
+                // Level edges inside of a row matter to exact coverage, those between rows to nothing.
+                let matters = edge.y0 != edge.y1 || edge.y0 & (fixed::ONE - 1) != 0;
+                if matters && u32::try_from(points.len() + 2).is_ok() {
                     let start = points.len();
                     points.push(FixedPoint { x: edge.x0, y: edge.y0 });
                     points.push(FixedPoint { x: edge.x1, y: edge.y1 });
@@ -257,25 +259,31 @@ fn close_item(band: &mut BandList) -> bool {
 /// at `first_top`.
 #[inline(always)]
 fn list_by_band(bands: &mut [BandList], points: &[FixedPoint], start: usize, first_top: i32, band_shift: u32) {
-    for (index, pair) in (start as u32..).zip(points.get(start..).unwrap_or(&[]).windows(2)) {
-        let [from, to] = pair else { break };
-        let (low, high) = if from.y < to.y { (from.y, to.y) } else { (to.y, from.y) };
-        // Horizontal edges inside of a row matter to exact coverage.
-        if low == high && low & (fixed::ONE - 1) == 0 {
-            continue;
+    let band_of = |y: i32| ((y - first_top) >> band_shift) as usize;
+    let Some(([first, ..], rest)) = points.get(start..).and_then(|points| points.split_first_chunk::<1>()) else {
+        return;
+    };
+    // Outlines stay in a band for a while: what lies between two changes is listed in one go.
+    let (mut run, mut band, mut last_y) = (start as u32, band_of(first.y), first.y);
+    let mut list = |band: usize, run: u32, end: u32| {
+        if let Some(band) = bands.get_mut(band) {
+            band.edges.extend(run..end);
         }
-        let first = ((low - first_top) >> band_shift) as usize;
-        let last = ((high.max(low + 1) - 1 - first_top) >> band_shift) as usize;
-        if first == last {
-            if let Some(band) = bands.get_mut(first) {
-                band.edges.push(index);
+    };
+    for (end, point) in (start as u32..).zip(rest) {
+        let next = band_of(point.y);
+        if next != band {
+            list(band, run, end);
+            // The edge that leaves it; an end on a band's top is not in that band.
+            let (low, high) = if last_y < point.y { (last_y, point.y) } else { (point.y, last_y) };
+            for crossed in band_of(low)..=band_of(high - 1) {
+                list(crossed, end, end + 1);
             }
-        } else if let Some(bands) = bands.get_mut(first..=last) {
-            for band in bands {
-                band.edges.push(index);
-            }
+            (run, band) = (end + 1, next);
         }
+        last_y = point.y;
     }
+    list(band, run, (start + rest.len()) as u32);
 }
 
 /// The smallest and greatest x and y of some points, as left, top, right, bottom; `None` if there is no point, or one
