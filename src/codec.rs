@@ -43,7 +43,7 @@ impl Pixmap {
     /// [`Error::Format`] if the bytes are not a whole PNG file; [`Error::Limit`] if the picture is over
     /// [`Limits::default`].
     pub fn decode_png(bytes: &[u8]) -> Result<Self> {
-        decode(bytes, ImageFormat::Png)
+        decode(bytes, ImageFormat::Png, Limits::default())
     }
 
     /// The picture in a PNG, JPEG, GIF or WebP file's bytes, told apart by how they begin; of an
@@ -52,9 +52,14 @@ impl Pixmap {
     /// # Errors
     /// As [`Pixmap::decode_png`].
     pub fn decode(bytes: &[u8]) -> Result<Self> {
+        Self::decode_within(bytes, Limits::default())
+    }
+
+    /// The same for pictures that are not to be larger than `limits` says.
+    pub(crate) fn decode_within(bytes: &[u8], limits: Limits) -> Result<Self> {
         let format = image::guess_format(bytes)
             .map_err(|_| Error::Format("the data is not a PNG, JPEG, GIF or WebP picture".to_owned()))?;
-        decode(bytes, format)
+        decode(bytes, format, limits)
     }
 
     /// The picture in a PNG file.
@@ -68,9 +73,8 @@ impl Pixmap {
     }
 }
 
-fn decode(bytes: &[u8], format: ImageFormat) -> Result<Pixmap> {
+fn decode(bytes: &[u8], format: ImageFormat, limits: Limits) -> Result<Pixmap> {
     let name = || format!("{format:?}").to_uppercase();
-    let limits = Limits::default();
     // The header's size is checked first: a file of a few bytes may claim a picture of gigabytes.
     let (width, height) = ImageReader::with_format(Cursor::new(bytes), format)
         .into_dimensions()

@@ -10,6 +10,8 @@ use crate::canvas::Canvas;
 use crate::display_list::ImagePaint;
 use crate::geom::Rect;
 use crate::paint::FilterQuality;
+#[cfg(feature = "codec")]
+use crate::surface::Limits;
 use crate::surface::Pixmap;
 
 /// An embedded picture that was decoded.
@@ -60,7 +62,7 @@ impl Renderer<'_> {
         if let Some(picture) = self.pictures.iter().find(|picture| Arc::ptr_eq(&picture.bytes, bytes)) {
             return picture.image.clone();
         }
-        let image = match decode(bytes) {
+        let image = match decode(bytes, self.pixels_to_decode()) {
             Ok(picture) if self.count_pixels(picture.width(), picture.height()) => Some(Arc::new(picture)),
             Ok(_) => {
                 self.warnings.add(WarningKind::Image("the pictures are too large together".to_owned()), id);
@@ -77,12 +79,13 @@ impl Renderer<'_> {
 }
 
 #[cfg(feature = "codec")]
-fn decode(bytes: &[u8]) -> Result<Pixmap, String> {
-    Pixmap::decode(bytes).map_err(|error| error.to_string())
+fn decode(bytes: &[u8], max_pixels: u64) -> Result<Pixmap, String> {
+    let limits = Limits { max_pixels, ..Limits::default() };
+    Pixmap::decode_within(bytes, limits).map_err(|error| error.to_string())
 }
 
 #[cfg(not(feature = "codec"))]
-fn decode(_: &[u8]) -> Result<Pixmap, String> {
+fn decode(_: &[u8], _: u64) -> Result<Pixmap, String> {
     Err("this build has no picture decoders (feature `codec`)".to_owned())
 }
 

@@ -193,4 +193,12 @@ impl<'s> Renderer<'s> {
         self.pixels = self.pixels.saturating_add(u64::from(width) * u64::from(height));
         self.pixels <= MAX_PIXELS
     }
+
+    /// The most pixels that the next embedded picture may have.
+    ///
+    /// Decoding takes up to 12 bytes for each (16 bits a channel beside the pixmap), so that with what is kept already
+    /// a quarter of what is left never makes more than 1 GiB.
+    pub(super) fn pixels_to_decode(&self) -> u64 {
+        MAX_PIXELS.saturating_sub(self.pixels) / 4
+    }
 }

@@ -285,6 +285,30 @@ fn text_without_fonts_is_left_out() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("no fonts"), "{output:?}");
 }
 
+/// Its header claims 16,000 × 16,000 pixels: decoded, they would take 1 GiB and their decoder's buffers.
+#[test]
+fn a_picture_of_16_000_pixels_a_side_is_left_out() {
+    let folder = Folder::new();
+    let mut png = Pixmap::new(1, 1).unwrap().encode_png().unwrap();
+    // Signature, the chunk's length and its name come before the sides; its checksum follows five more bytes.
+    png[16..20].copy_from_slice(&16_000_u32.to_be_bytes());
+    png[20..24].copy_from_slice(&16_000_u32.to_be_bytes());
+    let checksum = crc32(&png[12..29]);
+    png[29..33].copy_from_slice(&checksum.to_be_bytes());
+    fs::write(folder.0.join("large.png"), png).unwrap();
+    let output = folder.run(&svg("<image href='large.png' width='64' height='64'/>"), &[]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("16000 × 16000") && said.lines().count() == 1, "{said}");
+}
+
+/// PNG's checksum of a chunk's name and content.
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |sum, byte| {
+        (0..8).fold(sum ^ u32::from(*byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xEDB8_8320 } else { sum >> 1 })
+    })
+}
+
 #[test]
 fn time_and_memory_have_limits() {
     let folder = Folder::new();
