@@ -641,11 +641,20 @@ struct Slabs {
 }
 
 impl Slabs {
-    fn cut(&mut self, parts: &[Part], changes: &[(i32, i32)]) {
+    fn cut(&mut self, parts: &[Part], changes: &[(i32, i32)], column: i32) {
         self.cuts.clear();
         self.cuts.extend([0, fixed::ONE]);
         let ends = parts.iter().flat_map(|part| [part.y0, part.y1]);
-        for y in changes.iter().map(|(y, _)| *y).chain(ends) {
+        // A flat part comes and goes at the pixel's sides, between two scanlines of any number.
+        let sides = parts.iter().filter(|part| part.slope.abs() > FLAT).flat_map(|part| {
+            let offset = part.x + ((part.base - column) * fixed::ONE) as f32;
+            let at = |side: f32| {
+                let y = ((side - offset) / part.slope + 0.5) as i32;
+                if y > part.y0 && y < part.y1 { y } else { 0 }
+            };
+            [at(0.0), at(256.0)]
+        });
+        for y in changes.iter().map(|(y, _)| *y).chain(ends).chain(sides) {
             if y > 0 && y < fixed::ONE && !self.cuts.contains(&y) {
                 self.cuts.push(y);
                 if self.cuts.len() > MOST_SLABS {
@@ -736,7 +745,7 @@ fn coverage<S: Simd, const EVEN_ODD: bool>(simd: S, window: &mut Window, column:
     if parts.len() > MOST_CROSSINGS {
         return None;
     }
-    slabs.cut(parts, changes);
+    slabs.cut(parts, changes, column);
     let is_flat = parts.iter().any(|part| part.slope.abs() > FLAT);
     let eights = slabs.place_scanlines(is_flat);
     let mut area = f32x8::splat(simd, 0.0);
