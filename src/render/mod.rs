@@ -46,19 +46,26 @@ impl Renderer {
             return Ok(());
         }
         let settings = settings.resolved();
+        let frame = IntRect::from_xywh(0, 0, target.width(), target.height());
+        let (plan, planned) = plan::plan(list, frame, settings);
+        self.paint(list, &plan, target, settings);
+        planned
+    }
+
+    /// Draws a recording whose pictures are made. `settings` are resolved.
+    fn paint(&mut self, list: &DisplayList, plan: &plan::Plan, target: &mut PixmapMut<'_>, settings: RenderSettings) {
         let (width, height) = (target.width(), target.height());
         let frame = IntRect::from_xywh(0, 0, width, height);
-        let (plan, planned) = plan::plan(list, frame, settings);
         let band_height = settings.band_height;
         let bands = height.div_ceil(band_height) as usize;
 
         let chunk_count = prepare::chunk_count(list.commands.len(), settings.threads);
         self.chunks.resize_with(chunk_count.max(self.chunks.len()), prepare::Chunk::default);
-        let Some(chunks) = self.chunks.get_mut(..chunk_count) else { return planned };
+        let Some(chunks) = self.chunks.get_mut(..chunk_count) else { return };
         let ranges = prepare::split(list.commands.len(), chunk_count);
         let jobs: Vec<_> = chunks.iter_mut().zip(ranges).collect();
         crate::pool::for_each(settings.threads, jobs, |(chunk, range)| {
-            chunk.prepare(list, &plan, range, frame, bands, band_height.trailing_zeros(), settings.level);
+            chunk.prepare(list, plan, range, frame, bands, band_height.trailing_zeros(), settings.level);
         });
 
         let chunks: &[prepare::Chunk] = chunks;
@@ -71,11 +78,10 @@ impl Renderer {
             let top = index as u32 * band_height;
             let surface =
                 surface::Surface::new(rows, stride, 0, width as usize, band_height.min(height - top) as usize);
-            band::render(list, &plan, chunks, index, top as i32, surface, &mut own, settings.level);
+            band::render(list, plan, chunks, index, top as i32, surface, &mut own, settings.level);
             if let Ok(mut all) = scratch.lock() {
                 all.push(own);
             }
         });
-        planned
     }
 }

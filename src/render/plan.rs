@@ -68,8 +68,12 @@ fn source(effect: &Effect, settings: RenderSettings) -> Result<Image> {
     if effect.extent.is_empty() || effect.list.commands.is_empty() {
         return Ok(Image::empty());
     }
-    let mut pixmap = Pixmap::new(effect.extent.width(), effect.extent.height())?;
-    Renderer::default().render(&effect.list, &mut pixmap.as_mut(), settings)?;
+    let frame = IntRect::from_xywh(0, 0, effect.extent.width(), effect.extent.height());
+    // Pictures in it come first, so that effects in each other do not hold one surface for each.
+    let (plan, planned) = plan(&effect.list, frame, settings);
+    planned?;
+    let mut pixmap = Pixmap::new(frame.width(), frame.height())?;
+    Renderer::default().paint(&effect.list, &plan, &mut pixmap.as_mut(), settings);
     Ok(Image::from_pixmap(pixmap, effect.extent.left, effect.extent.top))
 }
 
