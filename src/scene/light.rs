@@ -1,14 +1,11 @@
-//! Lights ready for shading, and their shadow maps.
+//! Lights ready for shading, and shadow volumes.
 
+use super::model::{Light, LightKind};
+use super::shadow::ShadowMap;
+use super::surface_shader::{Vector, dot, normalized};
+use crate::num::trig;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
-use glam::Mat4;
-
-use super::bounds::Aabb;
-use super::model::{Light, LightKind, ShadowSettings};
-use super::surface_shader::{Vector, dot, normalized, to_integers};
-use crate::num::trig;
-use crate::space::camera;
 
 /// A light with everything reckoned that does not change over a frame.
 pub(super) struct PreparedLight {
@@ -21,15 +18,6 @@ enum Prepared {
     Directional([f32; 3]),
     Point { position: [f32; 3], inverse_range: f32 },
     Spot { position: [f32; 3], direction: [f32; 3], inverse_range: f32, outer: f32, inverse_width: f32 },
-}
-
-/// Depths as a light sees them.
-pub(super) struct ShadowMap {
-    /// From world space to the light's clip space.
-    pub(super) to_light: Mat4,
-    pub(super) side: u32,
-    pub(super) depths: Vec<f32>,
-    pub(super) settings: ShadowSettings,
 }
 
 impl PreparedLight {
@@ -86,82 +74,6 @@ impl PreparedLight {
             Some(map) => strength * map.light_at(place, mask),
             None => strength,
         }
-    }
-}
-
-impl ShadowMap {
-    /// The matrix to the clip space of a light, such that a scene's box is inside; `None` for a light that cannot have a map.
-    pub(super) fn matrix(light: &Light, bounds: &Aabb) -> Option<Mat4> {
-        if bounds.is_empty() {
-            return None;
-        }
-        let up = |d: [f32; 3]| {
-            if d[1].abs() < 0.9 * (d[0].abs() + d[1].abs() + d[2].abs()) { [0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0] }
-        };
-        match light.kind {
-            LightKind::Directional(towards) => {
-                let direction = super::model::unit(towards.map(f64::from))?;
-                let (center, radius) = (bounds.center(), bounds.radius().max(1e-6) * 1.001);
-                let eye = std::array::from_fn(|i| center[i] + direction[i] * radius * 2.0);
-                let view = camera::look_at(eye, center, up(direction));
-                // As tight around the box as the light's axes allow.
-                let seen = bounds.transformed(&view);
-                let margin = radius * 0.002;
-                let projection = camera::orthographic(
-                    seen.min[0] - margin,
-                    seen.max[0] + margin,
-                    seen.min[1] - margin,
-                    seen.max[1] + margin,
-                    -seen.max[2] - margin,
-                    -seen.min[2] + margin,
-                );
-                Some(camera::product(&projection, &view))
-            }
-            LightKind::Spot { position, direction, angle, .. } => {
-                let direction = super::model::unit(direction.map(f64::from))?;
-                let at = std::array::from_fn(|i| position[i] + direction[i]);
-                let view = camera::look_at(position, at, up(direction));
-                let seen = bounds.transformed(&view);
-                let far = (-seen.min[2]).max(1e-3) * 1.001;
-                let near = (-seen.max[2] * 0.999).max(far * 1e-3);
-                let fov = (angle * 2.02).clamp(0.01, 3.1);
-                Some(camera::product(&camera::perspective(fov, 1.0, near, far), &view))
-            }
-            LightKind::Point { .. } => None,
-        }
-    }
-
-    /// How much of the light reaches places: percentage-closer filtering (Reeves, Salesin and Cook, *Rendering antialiased shadows
-    /// with depth maps*, 1987). Places outside of the map are lit.
-    #[inline(always)]
-    fn light_at<S: Simd>(&self, place: &Vector<S>, mask: u8) -> f32x8<S> {
-        let simd = place[0].simd;
-        let m = self.to_light.to_cols_array_2d();
-        let row = |r: usize| place[0] * m[0][r] + place[1] * m[1][r] + place[2] * m[2][r] + m[3][r];
-        let w = row(3);
-        let inverse = f32x8::splat(simd, 1.0) / w;
-        let side = self.side as f32;
-        let x = to_integers(((row(0) * inverse + 1.0) * (0.5 * side)).floor()).to_array();
-        let y = to_integers(((f32x8::splat(simd, 1.0) - row(1) * inverse) * (0.5 * side)).floor()).to_array();
-        let depth = ((row(2) * inverse + 1.0) * 0.5 - self.settings.bias).to_array();
-        let w = w.to_array();
-        let radius = self.settings.radius.min(8) as i32;
-        let taps = ((2 * radius + 1) * (2 * radius + 1)) as f32;
-        let side = self.side as i32;
-        let mut out = [1.0_f32; 8];
-        for lane in (0..8).filter(|lane| mask >> lane & 1 == 1 && w[*lane] > 0.0) {
-            let mut lit = 0_u32;
-            for dy in -radius..=radius {
-                for dx in -radius..=radius {
-                    let (x, y) = (x[lane].saturating_add(dx), y[lane].saturating_add(dy));
-                    let inside = x >= 0 && y >= 0 && x < side && y < side;
-                    let stored = if inside { self.depths.get((y * side + x) as usize).copied() } else { None };
-                    lit += u32::from(stored.is_none_or(|stored| depth[lane] <= stored));
-                }
-            }
-            out[lane] = lit as f32 / taps;
-        }
-        f32x8::load_array(simd, out)
     }
 }
 

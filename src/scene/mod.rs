@@ -21,6 +21,7 @@ mod bvh;
 mod light;
 mod model;
 mod render;
+mod shadow;
 mod surface_shader;
 
 pub use bounds::{Aabb, Frustum};

@@ -253,7 +253,7 @@ pub struct Light {
     pub kind: LightKind,
     /// RGB times intensity; 1, 1, 1 is white.
     pub color: [f32; 3],
-    /// Whether it casts shadows, by a shadow map. Point lights do not.
+    /// Whether it casts shadows, by a shadow map: one picture for directional and spot lights, the six faces of a cube for point lights.
     pub shadows: bool,
 }
 
@@ -267,14 +267,16 @@ impl Light {
 /// How shadow maps are made and read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowSettings {
-    /// Columns and rows of the map, 16 ..= 8192. Default 1024.
+    /// Columns and rows of the map, 16 ..= 8192; of each face of a point light's, 16 ..= 4096. Default 1024.
     pub resolution: u32,
     /// Depth added when the map is drawn, in multiples of the slope per texel, once more for each step of `radius`; see
     /// [`Depth::bias_slope`](crate::space::Depth::bias_slope). Default 1.5.
     pub bias_slope: f32,
-    /// Depth (of the light's 0 ..= 1) that a surface may lie behind the map's. Default 0.001.
+    /// Depth (of the light's 0 ..= 1; for point lights, of the distance to the scene's farthest side) that a surface may lie behind the
+    /// map's. Default 0.001.
     pub bias: f32,
-    /// Percentage-closer filtering: (2·radius + 1)² texels are compared and averaged, 0 ..= 8. Default 1.
+    /// Percentage-closer filtering: (2·radius + 1)² texels are compared and averaged, 0 ..= 8. Default 1. Faces of a point light's map
+    /// reach as far over their sides, so that filtering sees no seams.
     pub radius: u32,
 }
 

@@ -5,8 +5,9 @@ use glam::Mat4;
 use super::antialias;
 use super::bounds::{Aabb, Frustum};
 use super::bvh::Bvh;
-use super::light::{PreparedLight, ShadowMap};
-use super::model::{AlphaMode, Camera, Light, Material, Mesh, MeshVertex, Projection, Scene, Shading};
+use super::light::PreparedLight;
+use super::model::{AlphaMode, Camera, Material, Mesh, MeshVertex, Projection, Scene, Shading};
+use super::shadow::{self, ShadowMap};
 use super::surface_shader::{COLOR, LIGHT, NORMAL, POSITION, SurfaceShader, UV, VARYINGS, Vector};
 use crate::color::Color;
 use crate::error::{Error, Result};
@@ -117,11 +118,11 @@ pub struct SceneStats {
 }
 
 /// One mesh in its place.
-struct Item<'a> {
-    mesh: &'a Mesh,
-    world: Mat4,
+pub(super) struct Item<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) world: Mat4,
     normals: [[f32; 3]; 3],
-    bounds: Aabb,
+    pub(super) bounds: Aabb,
     /// The number of its first primitive over the scene.
     first_primitive: u32,
     /// Distance of the box's middle along the view axis.
@@ -293,44 +294,15 @@ fn prepare_lights(scene: &Scene, items: &[Item<'_>], settings: &SceneSettings) -
     for light in &scene.lights {
         let mut prepared = PreparedLight::new(light);
         if light.shadows && settings.look == Look::Materials {
-            prepared.shadow = shadow_map(scene, light, items, &bounds, settings)?;
+            prepared.shadow = ShadowMap::new(&scene.shadows, light, items, &bounds, settings)?;
         }
         lights.push(prepared);
     }
     Ok(lights)
 }
 
-/// Draws the depths that a light sees.
-fn shadow_map(
-    scene: &Scene,
-    light: &Light,
-    items: &[Item<'_>],
-    bounds: &Aabb,
-    settings: &SceneSettings,
-) -> Result<Option<ShadowMap>> {
-    let Some(to_light) = ShadowMap::matrix(light, bounds) else { return Ok(None) };
-    let side = scene.shadows.resolution.clamp(16, 8192);
-    let mut target = Target::new(side, side)?;
-    // Filtering compares with texels that lie farther off along the slope.
-    let bias_slope = scene.shadows.bias_slope * (1 + scene.shadows.radius.min(8)) as f32;
-    let depth = Depth { bias_slope, clamp: true, ..Depth::default() };
-    let mut pipeline = Pipeline::new(side, side).with_threads(settings.threads).with_level(settings.level);
-    pipeline.state.depth = depth;
-    for item in items {
-        let m = camera::product(&to_light, &item.world);
-        let vertex = vertex_fn(0, move |v: &MeshVertex, _: &mut [f32]| {
-            let [x, y, z] = v.position;
-            camera::transform(&m, [x, y, z, 1.0])
-        });
-        let mesh = item.mesh;
-        let primitives = Primitives { vertices: &mesh.vertices, indices: Some(&mesh.indices), topology: mesh.topology };
-        pipeline.draw_depth(&mut target, &primitives, &vertex);
-    }
-    Ok(Some(ShadowMap { to_light, side, depths: target.depths(), settings: scene.shadows }))
-}
-
 /// The depth image of a scene's light, as [`draw_scene`] makes it: (side, depths 0 ..= 1 with rows top down, the matrix from world space to the
-/// light's clip space). `None` for a light that has no map, or no such light.
+/// light's clip space). `None` for no such light, for one without a scene, and for a point light, whose map has six faces.
 ///
 /// # Errors
 /// [`Error::Limit`] where memory is not to be had.
@@ -338,8 +310,9 @@ pub fn light_depths(scene: &Scene, camera: &Camera, light: usize) -> Result<Opti
     let Some(light) = scene.lights.get(light) else { return Ok(None) };
     let items = collect(scene, camera);
     let bounds = items.iter().fold(Aabb::EMPTY, |bounds, item| bounds.union(&item.bounds));
-    let map = shadow_map(scene, light, &items, &bounds, &SceneSettings::default())?;
-    Ok(map.map(|map| (map.side, map.depths, map.to_light)))
+    let Some(to_light) = shadow::flat_view(light, &bounds) else { return Ok(None) };
+    let map = ShadowMap::flat(&scene.shadows, to_light, &items, &SceneSettings::default())?;
+    Ok(Some((map.side, map.depths, to_light)))
 }
 
 /// What the meshes of one frame share.

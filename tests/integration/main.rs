@@ -33,6 +33,7 @@ mod seeds_pipeline;
 mod seeds_polygons;
 mod seeds_sampling;
 mod seeds_scene;
+mod seeds_shadows;
 mod seeds_triangles;
 mod space_support;
 #[cfg(all(feature = "text", feature = "codec"))]
