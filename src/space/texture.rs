@@ -117,6 +117,17 @@ impl Texture {
         Self::new(pixmap.width(), pixmap.height(), 1, texels, sampler)
     }
 
+    /// The same texels with another filter; mipmaps are made or left out as it needs.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where memory is not to be had.
+    pub fn with_filter(&self, filter: Filter) -> Result<Self> {
+        let [width, height, depth] = self.size();
+        let rows = self.levels.first().map(|level| level.pairs.chunks(width as usize + 1)).into_iter().flatten();
+        let texels = rows.flat_map(|row| row.iter().take(width as usize).map(|pair| pair[0])).collect();
+        Self::new(width, height, depth, texels, Sampler { filter, ..self.sampler })
+    }
+
     /// Texels along u, v and the third direction.
     pub fn size(&self) -> [u32; 3] {
         let [level, ..] = &self.levels[..] else { return [1; 3] };

@@ -548,3 +548,34 @@ fn mesh_names_its_picture_and_writes_depths() {
     assert_failure(&folder.run(&["mesh", "square.obj", "--depth-out", "gone/d.npy"]), "gone/d.npy");
     assert!(!folder.has("other.png"));
 }
+
+#[test]
+fn mesh_filters_textures_as_it_is_told() {
+    let folder = Folder::new();
+    let stripes: String =
+        (0..32).map(|x| format!("<path d='M{} 0v64' stroke='#fff'/>", 2.0 * f64::from(x) + 0.5)).collect();
+    let svg = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='64' height='64'><path d='M0 0h64v64H0z'/>{stripes}</svg>"
+    );
+    folder.write("stripes.svg", &svg).write("stripes.mtl", "newmtl s\nKd 1 1 1\nmap_Kd stripes.png\n");
+    assert_success(&folder.run(&["render", "stripes.svg", "-o", "stripes.png"]));
+    let square =
+        "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    folder.write("square.obj", &format!("mtllib stripes.mtl\nusemtl s\n{square}"));
+    // The greys of the square's middle row, which is `side` pixels long.
+    let greys = |side: u32, filter: &[&str]| {
+        let size = format!("{side}x{side}");
+        let eye = ["mesh", "square.obj", "-o", "out.png", "--shading", "unlit", "--size", &size];
+        let view = ["--eye", "0,0,4", "--at", "0,0,0", "--ortho", "--fov", "28.0724870"];
+        assert_success(&folder.run(&[&eye[..], &view, filter].concat()));
+        let picture = folder.read("out.png");
+        (1..side - 1).map(|x| picture.pixel(x, side / 2).unwrap()[0]).collect::<std::collections::BTreeSet<_>>()
+    };
+    // Enlarged, nearest shows black and white alone; reduced, only mipmaps make one grey of them.
+    assert_eq!(greys(640, &["--filter", "nearest"]), [0, 255].into());
+    assert!(greys(640, &["--filter", "bilinear"]).len() > 5);
+    assert_eq!(greys(640, &["--filter", "bilinear"]), greys(640, &[]));
+    assert_eq!(greys(15, &["--filter", "trilinear"]), greys(15, &[]));
+    assert!(greys(15, &[]).iter().all(|v| (100..=155).contains(v)), "{:?}", greys(15, &[]));
+    assert!(greys(15, &["--filter", "bilinear"]).iter().any(|v| !(100..=155).contains(v)));
+}

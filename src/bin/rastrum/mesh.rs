@@ -1,6 +1,7 @@
 //! `rastrum mesh`: 3D models as pictures.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
@@ -10,7 +11,7 @@ use rastrum::scene::{
     Aabb, Camera, Fog, FogKind, Light, LightKind, Look, Material, Mesh, MeshVertex, Node, Projection, Scene,
     SceneAntialias, SceneSettings, SceneStats, Shading, draw_scene, render_picture,
 };
-use rastrum::space::{Cull, Fill, Samples, Target, Topology, Viewport, camera};
+use rastrum::space::{Cull, Fill, Filter, Samples, Target, Texture, Topology, Viewport, camera};
 use rastrum::{Color, Pixmap};
 
 use crate::args::Timings;
@@ -121,6 +122,10 @@ pub(crate) struct MeshArguments {
     #[arg(long)]
     no_textures: bool,
 
+    /// How textures are sampled; only trilinear uses mipmaps. Default: as the model's samplers say, trilinear where they say nothing.
+    #[arg(long, value_enum)]
+    filter: Option<TextureFilter>,
+
     /// Which side of triangles is left out. Default: as the materials say.
     #[arg(long, value_enum)]
     cull: Option<MeshCull>,
@@ -212,6 +217,13 @@ enum MeshShading {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TextureFilter {
+    Nearest,
+    Bilinear,
+    Trilinear,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum MeshCull {
     None,
     Back,
@@ -291,6 +303,9 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<Outcome, Failure> {
     let output = &output;
     let bounds = scene.bounds();
     prepare(&mut scene, arguments, &bounds);
+    if let Some(filter) = arguments.filter {
+        filter_textures(&mut scene, filter)?;
+    }
     let settings = settings(arguments);
     let frames = arguments.turntable.unwrap_or(1);
     let (mut drawing, mut encoding) = (0.0, 0.0);
@@ -392,6 +407,25 @@ fn up_of(arguments: &MeshArguments) -> [f32; 3] {
         (None, Axis::Y) => [0.0, 1.0, 0.0],
         (None, Axis::Z) => [0.0, 0.0, 1.0],
     }
+}
+
+/// Gives all textures one filter; materials that share a texture share it still.
+fn filter_textures(scene: &mut Scene, filter: TextureFilter) -> Result<(), Failure> {
+    let filter = match filter {
+        TextureFilter::Nearest => Filter::Nearest,
+        TextureFilter::Bilinear => Filter::Bilinear,
+        TextureFilter::Trilinear => Filter::Trilinear,
+    };
+    let mut done: Vec<(Arc<Texture>, Arc<Texture>)> = Vec::new();
+    for texture in scene.materials.iter_mut().filter_map(|material| material.texture.as_mut()) {
+        if let Some((_, filtered)) = done.iter().find(|(before, _)| Arc::ptr_eq(before, texture)) {
+            *texture = Arc::clone(filtered);
+            continue;
+        }
+        let filtered = Arc::new(texture.with_filter(filter).map_err(|error| Failure::new(error.to_string()))?);
+        done.push((std::mem::replace(texture, Arc::clone(&filtered)), filtered));
+    }
+    Ok(())
 }
 
 /// Lights, overridden materials, grid and axes; for ids, meshes in the order of their nodes' names.
