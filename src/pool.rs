@@ -1,5 +1,13 @@
 //! Jobs on threads.
 
+/// The threads that a setting stands for: 0 for one per core, never more than 1024.
+pub(crate) fn threads(wanted: usize) -> usize {
+    match wanted {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        wanted => wanted.min(1024),
+    }
+}
+
 /// Runs `work` on every job, on up to `threads` threads, of which the caller's is one; returns when all are done.
 #[cfg(feature = "parallel")]
 pub(crate) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) + Sync) {

@@ -46,6 +46,11 @@ impl SimdLevel {
         }
     }
 
+    /// The level if this machine has it, else the scalar one.
+    pub(crate) fn or_scalar(self) -> Self {
+        if self.is_available() { self } else { Self::Scalar }
+    }
+
     /// Whether this machine has the level.
     pub fn is_available(self) -> bool {
         let best = Level::new();

@@ -1,6 +1,7 @@
 //! How to render: none of it changes a pixel.
 
 use crate::num::level::SimdLevel;
+use crate::pool;
 
 /// How a canvas renders. None of the settings changes a byte of the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,11 +43,10 @@ impl RenderSettings {
 
     /// The settings with every default and range applied.
     pub(super) fn resolved(self) -> Self {
-        let threads = match self.threads {
-            0 => std::thread::available_parallelism().map_or(1, usize::from),
-            threads => threads.min(1024),
-        };
-        let level = if self.level.is_available() { self.level } else { SimdLevel::Scalar };
-        Self { level, threads, band_height: self.band_height.clamp(8, 1024).next_power_of_two() }
+        Self {
+            level: self.level.or_scalar(),
+            threads: pool::threads(self.threads),
+            band_height: self.band_height.clamp(8, 1024).next_power_of_two(),
+        }
     }
 }

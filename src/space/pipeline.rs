@@ -14,6 +14,7 @@ use super::test::Tests;
 use super::traverse::{self, Traversal};
 use super::vertex::{ShadedVertices, Snap, VertexShader, Viewport, shade_vertices};
 use crate::num::level::SimdLevel;
+use crate::pool;
 use fearless_simd::prelude::*;
 use fearless_simd::u32x8;
 
@@ -87,11 +88,7 @@ impl Pipeline {
     }
 
     fn prepare(&self, target: &Target) -> Prepared {
-        let threads = match self.threads {
-            0 => std::thread::available_parallelism().map_or(1, usize::from),
-            threads => threads.min(256),
-        };
-        let level = if self.level.is_available() { self.level } else { SimdLevel::Scalar };
+        let (threads, level) = (pool::threads(self.threads), self.level.or_scalar());
         let state = self.state;
         // Pixels whose centre is in the viewport, the scissor and the target.
         let first =
@@ -166,7 +163,7 @@ impl Pipeline {
         }
         let total = std::sync::Mutex::new(counters);
         let jobs: Vec<_> = target.bands(prepared.band_tiles).into_iter().enumerate().collect();
-        crate::pool::for_each(prepared.threads, jobs, |(index, mut band)| {
+        pool::for_each(prepared.threads, jobs, |(index, mut band)| {
             let mut own = Counters::default();
             let mut batch = Batch::new();
             for chunk in &chunks {
@@ -354,7 +351,7 @@ impl Prepared {
         let size = count.div_ceil(self.threads * 4).max(CHUNK);
         let mut chunks: Vec<Chunk> = (0..count.div_ceil(size)).map(|_| Chunk::default()).collect();
         let jobs: Vec<_> = chunks.iter_mut().enumerate().collect();
-        crate::pool::for_each(self.threads, jobs, |(index, chunk)| {
+        pool::for_each(self.threads, jobs, |(index, chunk)| {
             let start = index * size;
             self.binning.run(primitives, start..(start + size).min(count), shaded, chunk);
         });
