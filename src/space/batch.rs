@@ -26,18 +26,25 @@ pub(crate) struct BatchTriangle {
     pub(crate) inverse_w: [f32; 3],
 }
 
-/// Up to eight pixels of one row of one tile that one triangle covers.
+/// Up to eight pixels of one row of one tile that one triangle covers, or the whole tile.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group {
     /// The first pixel, a multiple of 8.
     pub(crate) x: u16,
     pub(crate) y: u16,
     pub(crate) triangle: u16,
-    /// One bit a pixel and sample: bit 8·s + i is pixel i's sample s; samples 8 to 15 are in the second.
+    /// One bit a pixel and sample: bit 8·s + i is pixel i's sample s; samples 8 to 15 are in the second. All bits of the first, with
+    /// one sample a pixel, stand for all rows of a tile; see [`Traversal`](super::traverse::Traversal).
     pub(crate) masks: [u64; 2],
 }
 
 impl Group {
+    /// Whether a group of a target with one sample a pixel is a whole tile.
+    #[inline(always)]
+    pub(crate) fn is_tile(&self) -> bool {
+        self.masks[0] == !0
+    }
+
     /// The pixels with any sample.
     #[inline(always)]
     pub(crate) fn pixels(&self) -> u8 {

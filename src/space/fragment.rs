@@ -7,7 +7,7 @@ use super::batch::BatchTriangle;
 use super::bin::Vertices;
 use super::test::{lane_offsets, plane_at};
 use super::vertex::MAX_VARYINGS;
-use crate::num::lanes::truncate_f32;
+use crate::num::lanes::{max_i32, truncate_f32};
 
 /// The program that gives eight pixels their colours.
 ///
@@ -70,11 +70,10 @@ pub fn pack<S: Simd>([r, g, b, a]: [f32x8<S>; 4]) -> u32x8<S> {
 fn level<S: Simd>(v: f32x8<S>) -> u32x8<S> {
     let simd = v.simd;
     let v = v * 255.0 + 0.5;
-    let zero = f32x8::splat(simd, 0.0);
-    let v = v.simd_gt(zero).select(v, zero);
-    let v = v.simd_lt(f32x8::splat(simd, 255.0)).select(v, f32x8::splat(simd, 255.0));
-    let v: i32x8<S> = truncate_f32(v);
-    v.bitcast()
+    let most = f32x8::splat(simd, 255.0);
+    // What is below 0 or not a number becomes an integer of at most 0 at every level.
+    let v: i32x8<S> = truncate_f32(v.simd_ge(most).select(most, v));
+    max_i32(v, i32x8::splat(simd, 0)).bitcast()
 }
 
 /// Packed RGBA8 as components 0 ..= 1.

@@ -66,6 +66,11 @@ impl Samples {
         self.colors() < self.coverage()
     }
 
+    /// The number of samples where there are 2, 4 or 8, each with a colour.
+    pub(crate) fn even(self) -> Option<usize> {
+        matches!(self, Self::Msaa2 | Self::Msaa4 | Self::Msaa8).then_some(self.colors())
+    }
+
     /// Where the coverage samples lie, in 1/16 pixel from the pixel's top left corner, x then y: the standard
     /// positions of Direct3D 11.1.
     pub fn positions(self) -> &'static [(u8, u8)] {

@@ -135,13 +135,19 @@ impl Pipeline {
             prepared.snap,
             prepared.threads,
         );
-        let output = self.output::<F>(&prepared.tests);
+        let output = self.output::<F>(&prepared.tests, target);
         let mut counters = Counters { vertices: primitives.vertices.len() as u64, ..Counters::default() };
         let level = prepared.level;
         let flush = |batch: &Batch, vertices: Vertices<'_>, band: &mut BandMut<'_>, counters: &mut Counters| {
             shade::flush(level, fragment, &output, batch, vertices, band, counters);
         };
-        let traversal = Traversal { binning: &prepared.binning, tests: prepared.tests, early: output.early, level };
+        let traversal = Traversal {
+            binning: &prepared.binning,
+            tests: prepared.tests,
+            early: output.early,
+            tiles: output.plain,
+            level,
+        };
         let count = primitives.count();
         if prepared.threads <= 1 {
             let mut batch = Batch::new();
@@ -181,15 +187,16 @@ impl Pipeline {
         total.into_inner().unwrap_or_default()
     }
 
-    fn output<F: FragmentShader>(&self, tests: &Tests) -> Output {
+    fn output<F: FragmentShader>(&self, tests: &Tests, target: &Target) -> Output {
         let mask = self.state.color_mask.map(|write| if write { 255 } else { 0 });
-        Output {
-            tests: *tests,
-            early: !F::DISCARDS && self.state.alpha_test.is_none(),
-            alpha_test: self.state.alpha_test,
-            blend: self.state.blend,
-            color_mask: u32::from_le_bytes(mask),
-        }
+        let early = !F::DISCARDS && self.state.alpha_test.is_none();
+        let color_mask = u32::from_le_bytes(mask);
+        let plain = early
+            && color_mask == !0
+            && self.state.blend == Blend::Replace
+            && target.samples.coverage() == 1
+            && target.attachments.is_empty();
+        Output { tests: *tests, early, alpha_test: self.state.alpha_test, blend: self.state.blend, color_mask, plain }
     }
 
     /// Which primitives each band of rows lists, and how many rows a band has: what [`Pipeline::draw`] makes of the primitives with
@@ -276,7 +283,7 @@ impl Pipeline {
         let transform = &prepared.binning.transform;
         let shaded = shade_vertices(vertex, primitives.vertices, transform, depth_clamp, prepared.snap, 1);
         counters.vertices = primitives.vertices.len() as u64;
-        let output = Output { early: true, ..pipeline.output::<F>(&prepared.tests) };
+        let output = Output { early: true, ..pipeline.output::<F>(&prepared.tests, target) };
         let (tiles_x, level) = (target.tiles_x, prepared.level);
         let mut bands = target.bands(prepared.band_tiles);
         let Some(band) = bands.first_mut() else { return counters };

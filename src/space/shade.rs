@@ -22,6 +22,8 @@ pub(crate) struct Output {
     pub(crate) blend: Blend,
     /// The bits of a pixel that are written.
     pub(crate) color_mask: u32,
+    /// Nothing but colours to store, one sample a pixel: groups may be whole tiles.
+    pub(crate) plain: bool,
 }
 
 /// Shades the queued pixels in their order, at a SIMD level. Not part of its caller, so that it is compiled once for each fragment
@@ -51,36 +53,35 @@ fn shade_batch<S: Simd, F: FragmentShader>(
 ) {
     let mut planes = Planes::new();
     let mut loaded = usize::MAX;
-    let plain = output.early
-        && !F::DISCARDS
-        && output.alpha_test.is_none()
-        && output.color_mask == !0
-        && output.blend == Blend::Replace
-        && band.samples.coverage() == 1
-        && band.attachments.is_empty();
-    if plain {
+    if output.plain {
         // The common case apart, so that its loop is short.
+        let mut passed = 0;
         for group in &batch.groups {
             if usize::from(group.triangle) != loaded {
                 loaded = usize::from(group.triangle);
                 let Some(triangle) = batch.triangles.get(loaded) else { continue };
                 planes.load(triangle, vertices);
             }
-            let mask = group.masks[0] as u8;
-            counters.fragments += u64::from(mask.count_ones());
-            let color = shader.shade(&Fragments::new(simd, &planes, group.x, group.y, mask)).color;
+            passed += u64::from(group.masks[0].count_ones());
             let (x, y) = (usize::from(group.x), usize::from(group.y));
             let tile = (y / TILE - band.first) * band.tiles_x + x / TILE;
             let Some(tile) = band.color.get_mut(tile) else { continue };
-            let row = &mut tile[y % TILE];
-            if mask == !0 {
-                color.store_array(row);
-            } else {
-                let mask = mask32x8::from_bitmask(simd, u64::from(mask));
-                mask.select(color, u32x8::load_array_ref(simd, row)).store_array(row);
+            let mask = group.masks[0] as u8;
+            // One row, or all of the tile, in which case what depends on the column alone is reckoned once.
+            let first = y % TILE;
+            let last = if group.is_tile() { TILE } else { first + 1 };
+            for (row, y) in tile[first..last].iter_mut().zip(group.y..) {
+                let color = shader.shade(&Fragments::new(simd, &planes, group.x, y, mask)).color;
+                if mask == !0 {
+                    color.store_array(row);
+                } else {
+                    let mask = mask32x8::from_bitmask(simd, u64::from(mask));
+                    mask.select(color, u32x8::load_array_ref(simd, row)).store_array(row);
+                }
             }
         }
-        counters.samples_passed += batch.groups.iter().map(|group| u64::from(group.masks[0].count_ones())).sum::<u64>();
+        counters.fragments += passed;
+        counters.samples_passed += passed;
         return;
     }
     for group in &batch.groups {
@@ -144,6 +145,18 @@ fn write_group<S: Simd>(
     }
     let samples = band.samples.coverage();
     let Some(tiles) = band.color.get_mut(tile * samples..(tile + 1) * samples) else { return };
+    if output.blend == Blend::Replace && output.color_mask == !0 {
+        for (sample, tile) in tiles.iter_mut().enumerate() {
+            let bits = masks[(sample / 8) & 1] >> (8 * (sample & 7)) & 255;
+            let row = &mut tile[y % TILE];
+            if bits == 255 {
+                color.store_array(row);
+            } else if bits != 0 {
+                mask32x8::from_bitmask(simd, bits).select(color, u32x8::load_array_ref(simd, row)).store_array(row);
+            }
+        }
+        return;
+    }
     for (sample, tile) in tiles.iter_mut().enumerate() {
         let bits = masks[(sample / 8) & 1] >> (8 * (sample & 7)) & 255;
         if bits == 0 {

@@ -195,6 +195,7 @@ impl Texture {
         let fixed = truncate_f32(lod * 256.0);
         let whole = fixed >> 8;
         let fraction: u32x8<S> = (fixed & 255).bitcast();
+        let blended = fraction.simd_gt(u32x8::splat(simd, 0)).any_true();
         let values = whole.to_array();
         let (mut first, mut end) = (values[0], values[0]);
         for value in values {
@@ -209,8 +210,8 @@ impl Texture {
                 continue;
             };
             let a = large.bilinear(self.sampler, u, v, 0);
-            let b = small.bilinear(self.sampler, u, v, 0);
-            let mixed = mix(a, b, both_halves(fraction));
+            // Where texels are enlarged, nothing of the next level is seen.
+            let mixed = if blended { mix(a, small.bilinear(self.sampler, u, v, 0), both_halves(fraction)) } else { a };
             out = if first == end { mixed } else { whole.simd_eq(i32x8::splat(simd, level)).select(mixed, out) };
         }
         out

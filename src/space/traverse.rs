@@ -20,6 +20,9 @@ use crate::num::level::{SimdLevel, dispatch};
 /// Tiles side by side that are asked at once whether they hide a triangle.
 const RUN: i32 = 16;
 
+/// Tiles of a row from which on it pays to find where those begin and end that a triangle covers as a whole.
+const LONG: i32 = 8;
+
 /// What a flush is given: the batch, its vertices, where to draw, and counters.
 pub(crate) type Flush<'f> = &'f mut dyn FnMut(&Batch, Vertices<'_>, &mut BandMut<'_>, &mut Counters);
 
@@ -29,6 +32,8 @@ pub(crate) struct Traversal<'a> {
     pub(crate) tests: Tests,
     /// Whether tests run before shading; else they run after it, in the flush.
     pub(crate) early: bool,
+    /// Whether the flush takes whole tiles as one group.
+    pub(crate) tiles: bool,
     pub(crate) level: SimdLevel,
 }
 
@@ -122,7 +127,8 @@ impl Walk<'_, '_, '_> {
         match (self.band.samples.coverage() == 1, small) {
             (true, true) => self.small(simd, &triangle, &edges, bounds),
             (true, false) => self.large::<S, true>(simd, &triangle, &edges, bounds),
-            (false, _) => self.large::<S, false>(simd, &triangle, &edges, bounds),
+            (false, true) => self.small_many(simd, &triangle, &edges, bounds),
+            (false, false) => self.large::<S, false>(simd, &triangle, &edges, bounds),
         }
     }
 
@@ -157,6 +163,74 @@ impl Walk<'_, '_, '_> {
                     }
                 };
                 self.row(simd, prepared, x, y, covered);
+            }
+        }
+        if let Some(prepared) = prepared {
+            self.keep(prepared);
+        }
+    }
+
+    /// Several samples a pixel, at most 2 × 2 tiles.
+    #[inline(never)]
+    fn small_many<S: Simd>(&mut self, simd: S, triangle: &Lazy, edges: &[Edge; 3], bounds: PixelBox) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.small_many_inlined(simd, triangle, edges, bounds),
+        );
+    }
+
+    #[inline(always)]
+    fn small_many_inlined<S: Simd>(&mut self, simd: S, triangle: &Lazy, edges: &[Edge; 3], bounds: PixelBox) {
+        let positions = self.band.samples.positions();
+        let lanes = i32x8::load_array(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
+        let zero = i32x8::splat(simd, 0);
+        // Edge functions at the pixels' corners, and what a sample's place adds: the difference of two constants, so that the sum is exact.
+        let corners = edges.map(|edge| edge.constant(0, 0));
+        let mut offsets = [[0_i32; 3]; 16];
+        for (offset, (x, y)) in offsets.iter_mut().zip(positions) {
+            *offset = std::array::from_fn(|i| {
+                (edges[i].constant(i32::from(*x) * 16, i32::from(*y) * 16) - corners[i]) as i32
+            });
+        }
+        let offsets = &offsets[..positions.len().min(16)];
+        let mut prepared: Option<BatchTriangle> = None;
+        for tile_x in bounds.left >> 3..=(bounds.right - 1) >> 3 {
+            let x = tile_x << 3;
+            let mut e: [i32x8<S>; 3] = std::array::from_fn(|i| {
+                let Edge { a, b, .. } = edges[i];
+                let first = i64::from(a) * i64::from(x) + i64::from(b) * i64::from(bounds.top) + corners[i];
+                // As for one sample; 16 rows, 7 columns and a sample's place are less than 2^30.
+                lanes * a + first.clamp(-(1 << 30), 1 << 30) as i32
+            });
+            let inside = lanes.simd_ge(i32x8::splat(simd, bounds.left - x))
+                & lanes.simd_lt(i32x8::splat(simd, bounds.right - x));
+            for y in bounds.top..bounds.bottom {
+                let mut masks = [0_u64; 2];
+                for (sample, offset) in offsets.iter().enumerate() {
+                    let e = (e[0] + offset[0]) | (e[1] + offset[1]) | (e[2] + offset[2]);
+                    masks[sample / 8] |= (e.simd_ge(zero) & inside).to_bitmask() << (8 * (sample & 7));
+                }
+                e = [e[0] + edges[0].b, e[1] + edges[1].b, e[2] + edges[2].b];
+                if masks == [0; 2] {
+                    continue;
+                }
+                if prepared.is_none() {
+                    self.reserve();
+                }
+                let prepared = prepared.get_or_insert_with(|| triangle.prepare(&self.traversal.tests));
+                if self.batch.groups.len() == GROUPS {
+                    self.batch.triangles.push(*prepared);
+                    self.flush();
+                }
+                if self.traversal.early {
+                    masks = test_group(simd, &self.traversal.tests, prepared, self.band, (x as u16, y as u16), masks);
+                }
+                if masks != [0; 2] {
+                    self.push(x, y, masks);
+                    if self.traversal.tests.depth.write {
+                        self.forget_bounds(x, y);
+                    }
+                }
             }
         }
         if let Some(prepared) = prepared {
@@ -286,6 +360,22 @@ impl Walk<'_, '_, '_> {
             }
             let rows = (bounds.top.max(y) - y, bounds.bottom.min(y + 8) - y);
             let (first, last) = ((left >> 3) as i32, (right >> 3) as i32);
+            // And in long rows the columns that every edge has inside in all rows.
+            let mut inner = (i64::MAX, i64::MIN);
+            if last - first >= LONG && rows == (0, 8) {
+                inner = (i64::from(bounds.left), i64::from(bounds.right - 1));
+                for (edge, least) in edges.iter().zip(least) {
+                    let (a, b) = (i64::from(edge.a), i64::from(edge.b));
+                    let lowest = least + b * i64::from(y) + if b < 0 { 7 * b } else { 0 };
+                    if a > 0 {
+                        inner.0 = inner.0.max(-lowest.div_euclid(a));
+                    } else if a < 0 {
+                        inner.1 = inner.1.min(lowest.div_euclid(-a));
+                    } else if lowest < 0 {
+                        inner.0 = i64::MAX;
+                    }
+                }
+            }
             let row = (y as usize / TILE - self.band.first) * self.band.tiles_x;
             let (mut next, mut checked) = (first, first);
             while next <= last {
@@ -307,20 +397,22 @@ impl Walk<'_, '_, '_> {
                 next += 1;
                 self.counters.tiles += 1;
                 let mut crossing = [false; 3];
-                let mut outside = false;
                 let mut corner = [0_i64; 3];
-                for i in 0..3 {
-                    let (a, b) = (i64::from(edges[i].a), i64::from(edges[i].b));
-                    corner[i] = a * i64::from(x) + b * i64::from(y);
-                    let (down, up) = (7 * (a.min(0) + b.min(0)), 7 * (a.max(0) + b.max(0)));
-                    outside |= corner[i] + most[i] + up < 0;
-                    crossing[i] = corner[i] + least[i] + down < 0;
+                let mut full = i64::from(x) >= inner.0 && i64::from(x) + 7 <= inner.1;
+                if !full {
+                    let mut outside = false;
+                    for i in 0..3 {
+                        let (a, b) = (i64::from(edges[i].a), i64::from(edges[i].b));
+                        corner[i] = a * i64::from(x) + b * i64::from(y);
+                        let (down, up) = (7 * (a.min(0) + b.min(0)), 7 * (a.max(0) + b.max(0)));
+                        outside |= corner[i] + most[i] + up < 0;
+                        crossing[i] = corner[i] + least[i] + down < 0;
+                    }
+                    if outside {
+                        continue;
+                    }
+                    full = rows == (0, 8) && x >= bounds.left && x + 8 <= bounds.right && crossing == [false; 3];
                 }
-                if outside {
-                    continue;
-                }
-                let whole = rows == (0, 8) && x >= bounds.left && x + 8 <= bounds.right;
-                let full = whole && crossing == [false; 3];
                 self.counters.tiles_accepted += u64::from(full);
                 let index = row + tile_x as usize;
                 let mut in_front = false;
@@ -342,22 +434,11 @@ impl Walk<'_, '_, '_> {
                     self.keep(prepared);
                     self.flush();
                 }
+                let tile = TileWalk { edges, constants: &constants, corner, crossing, full, x, y, rows, bounds };
                 let stored = if ONE {
-                    self.tile_one(
-                        simd,
-                        &prepared,
-                        edges,
-                        &constants,
-                        &corner,
-                        crossing,
-                        full,
-                        in_front,
-                        (x, y),
-                        rows,
-                        bounds,
-                    )
+                    self.tile_one(simd, &prepared, &tile, in_front)
                 } else {
-                    self.tile_many(simd, &prepared, edges, &constants, &corner, full, (x, y), rows, bounds)
+                    self.tile_many(simd, &prepared, &tile)
                 };
                 if tests.depth.write && stored {
                     let Some(bounds) = self.band.bounds.get_mut(index) else { continue };
@@ -376,21 +457,8 @@ impl Walk<'_, '_, '_> {
 
     /// The rows of one tile, one sample a pixel. Whether any pixel is left.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "the inner loop of the rasterizer")]
-    fn tile_one<S: Simd>(
-        &mut self,
-        simd: S,
-        triangle: &BatchTriangle,
-        edges: &[Edge; 3],
-        constants: &[[i64; 16]; 3],
-        corner: &[i64; 3],
-        crossing: [bool; 3],
-        full: bool,
-        in_front: bool,
-        (x, y): (i32, i32),
-        rows: (i32, i32),
-        bounds: PixelBox,
-    ) -> bool {
+    fn tile_one<S: Simd>(&mut self, simd: S, triangle: &BatchTriangle, tile: &TileWalk<'_>, in_front: bool) -> bool {
+        let &TileWalk { edges, constants, corner, crossing, full, x, y, rows, bounds } = tile;
         let lanes = i32x8::load_array(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
         let zero = i32x8::splat(simd, 0);
         let tests = &self.traversal.tests;
@@ -423,6 +491,17 @@ impl Walk<'_, '_, '_> {
             return self.batch.groups.len() > count;
         }
         let Some(depth) = self.band.depth.get_mut(index) else { return false };
+        if full && self.traversal.tiles && (in_front || !depth_on) {
+            // All of the tile: nothing to compare, one entry in the queue.
+            if tests.depth.write {
+                for (row, stored) in depth.iter_mut().enumerate() {
+                    let dy = f32x8::splat(simd, (y + row as i32) as f32 + 0.5 - triangle.gradients.y0);
+                    depth_keys(&tests.depth, triangle, dx, dy).store_array(stored);
+                }
+            }
+            self.batch.groups.push(Group { x: x as u16, y: y as u16, triangle: next, masks: [!0, 0] });
+            return true;
+        }
         for row in rows.0..rows.1 {
             let covered = if full {
                 mask32x8::splat(simd, true)
@@ -435,17 +514,11 @@ impl Walk<'_, '_, '_> {
             if depth_on {
                 let stored_row = &mut depth[row as usize & 7];
                 let dy = f32x8::splat(simd, (y + row) as f32 + 0.5 - triangle.gradients.y0);
-                if in_front && full {
-                    if tests.depth.write {
-                        depth_keys(&tests.depth, triangle, dx, dy).store_array(stored_row);
-                    }
-                } else {
-                    let key = depth_keys(&tests.depth, triangle, dx, dy);
-                    let stored = i32x8::load_array_ref(simd, stored_row);
-                    mask = if in_front { covered } else { depth_passes(tests.depth.compare, key, stored) & covered };
-                    if tests.depth.write {
-                        mask.select(key, stored).store_array(stored_row);
-                    }
+                let key = depth_keys(&tests.depth, triangle, dx, dy);
+                let stored = i32x8::load_array_ref(simd, stored_row);
+                mask = if in_front { covered } else { depth_passes(tests.depth.compare, key, stored) & covered };
+                if tests.depth.write {
+                    mask.select(key, stored).store_array(stored_row);
                 }
             }
             let masks = [mask.to_bitmask(), 0];
@@ -458,19 +531,8 @@ impl Walk<'_, '_, '_> {
 
     /// The rows of one tile, several samples a pixel. Whether any sample is left.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "the inner loop of the rasterizer")]
-    fn tile_many<S: Simd>(
-        &mut self,
-        simd: S,
-        triangle: &BatchTriangle,
-        edges: &[Edge; 3],
-        constants: &[[i64; 16]; 3],
-        corner: &[i64; 3],
-        full: bool,
-        (x, y): (i32, i32),
-        rows: (i32, i32),
-        bounds: PixelBox,
-    ) -> bool {
+    fn tile_many<S: Simd>(&mut self, simd: S, triangle: &BatchTriangle, tile: &TileWalk<'_>) -> bool {
+        let &TileWalk { edges, constants, corner, full, x, y, rows, bounds, .. } = tile;
         let lanes = i32x8::load_array(simd, [0, 1, 2, 3, 4, 5, 6, 7]);
         let zero = i32x8::splat(simd, 0);
         let samples = self.band.samples.coverage();
@@ -595,6 +657,24 @@ impl Walk<'_, '_, '_> {
         }
         self.keep(triangle);
     }
+}
+
+/// A tile on the way of a triangle.
+struct TileWalk<'a> {
+    edges: &'a [Edge; 3],
+    /// Each edge's constant for each sample.
+    constants: &'a [[i64; 16]; 3],
+    /// What the tile's place adds to them, where not all of the tile is covered.
+    corner: [i64; 3],
+    crossing: [bool; 3],
+    /// Whether all of the tile is covered.
+    full: bool,
+    /// The first pixel.
+    x: i32,
+    y: i32,
+    /// The rows of the tile that may be drawn, the second excluded.
+    rows: (i32, i32),
+    bounds: PixelBox,
 }
 
 /// A triangle whose planes are reckoned once a pixel of it is found to be covered.
