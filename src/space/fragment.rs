@@ -1,7 +1,7 @@
 //! The fragment stage: shaders on eight pixels at a time.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8, u32x8};
+use fearless_simd::{f32x4, f32x8, i32x8, u32x8};
 
 use super::batch::BatchTriangle;
 use super::bin::Vertices;
@@ -102,7 +102,7 @@ pub(crate) struct Planes<'a> {
 impl<'a> Planes<'a> {
     /// Reckons the planes of a triangle's varyings, four at a time, into `self`.
     #[inline(always)]
-    pub(crate) fn load(&mut self, triangle: &BatchTriangle, vertices: Vertices<'a>) {
+    pub(crate) fn load<S: Simd>(&mut self, simd: S, triangle: &BatchTriangle, vertices: Vertices<'a>) {
         self.triangle = *triangle;
         self.corners = triangle.vertices.map(|i| vertices.varyings(i));
         let w = triangle.vertices.map(|i| vertices.screen(i).inverse_w);
@@ -111,13 +111,12 @@ impl<'a> Planes<'a> {
         let values = self.value.as_chunks_mut::<4>().0.iter_mut();
         let steps = self.right.as_chunks_mut::<4>().0.iter_mut().zip(self.down.as_chunks_mut::<4>().0);
         for ((((a, b), c), value), (right, down)) in a.iter().zip(b).zip(c).zip(values).zip(steps) {
-            for i in 0..4 {
-                let v0 = a[i] * w[0];
-                let (d1, d2) = (b[i] * w[1] - v0, c[i] * w[2] - v0);
-                value[i] = v0 + (d1 * g.l1 + d2 * g.l2);
-                right[i] = d1 * g.x1 + d2 * g.x2;
-                down[i] = d1 * g.y1 + d2 * g.y2;
-            }
+            let four = |v: &[f32; 4]| f32x4::load_array_ref(simd, v);
+            let v0 = four(a) * w[0];
+            let (d1, d2) = (four(b) * w[1] - v0, four(c) * w[2] - v0);
+            (v0 + (d1 * g.l1 + d2 * g.l2)).store_array(value);
+            (d1 * g.x1 + d2 * g.x2).store_array(right);
+            (d1 * g.y1 + d2 * g.y2).store_array(down);
         }
     }
 

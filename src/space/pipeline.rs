@@ -161,6 +161,7 @@ impl Pipeline {
                 let vertices = Vertices::new(&shaded, &chunk);
                 traverse::draw(&traversal, draws, vertices, band, &mut batch, &mut counters, &mut { flush });
             }
+            shaded.recycle();
             return counters;
         }
         let chunks = prepared.bin(primitives, &shaded);
@@ -184,6 +185,8 @@ impl Pipeline {
                 *total += own;
             }
         });
+        shaded.recycle();
+        recycle(chunks);
         total.into_inner().unwrap_or_default()
     }
 
@@ -322,6 +325,21 @@ impl Pipeline {
     }
 }
 
+thread_local! {
+    /// The lists of the last draw on several threads: their memory is used again.
+    static KEPT: std::cell::Cell<Vec<Chunk>> = const { std::cell::Cell::new(Vec::new()) };
+}
+
+/// Entries of lists whose memory is kept for the next draw, at most.
+const KEPT_DRAWS: usize = 1 << 21;
+
+/// Leaves the memory of lists to the thread's next draw.
+fn recycle(chunks: Vec<Chunk>) {
+    if chunks.iter().flat_map(|chunk| &chunk.bands).map(Vec::capacity).sum::<usize>() <= KEPT_DRAWS {
+        KEPT.set(chunks);
+    }
+}
+
 /// Adds one piece of what `from` has to `to`, its own vertices renumbered.
 fn append(to: &mut Chunk, from: &Chunk, shaded: &ShadedVertices, piece: u8) {
     let own = shaded.screen.len() as u32;
@@ -356,7 +374,8 @@ impl Prepared {
     fn bin<V: Sync>(&self, primitives: &Primitives<'_, V>, shaded: &ShadedVertices) -> Vec<Chunk> {
         let count = primitives.count();
         let size = count.div_ceil(self.threads * 4).max(CHUNK);
-        let mut chunks: Vec<Chunk> = (0..count.div_ceil(size)).map(|_| Chunk::default()).collect();
+        let mut chunks = KEPT.take();
+        chunks.resize_with(count.div_ceil(size), Chunk::default);
         let jobs: Vec<_> = chunks.iter_mut().enumerate().collect();
         pool::for_each(self.threads, jobs, |(index, chunk)| {
             let start = index * size;

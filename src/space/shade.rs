@@ -60,7 +60,7 @@ fn shade_batch<S: Simd, F: FragmentShader>(
             if usize::from(group.triangle) != loaded {
                 loaded = usize::from(group.triangle);
                 let Some(triangle) = batch.triangles.get(loaded) else { continue };
-                planes.load(triangle, vertices);
+                planes.load(simd, triangle, vertices);
             }
             passed += u64::from(group.masks[0].count_ones());
             let (x, y) = (usize::from(group.x), usize::from(group.y));
@@ -88,7 +88,7 @@ fn shade_batch<S: Simd, F: FragmentShader>(
         if usize::from(group.triangle) != loaded {
             loaded = usize::from(group.triangle);
             let Some(triangle) = batch.triangles.get(loaded) else { continue };
-            planes.load(triangle, vertices);
+            planes.load(simd, triangle, vertices);
         }
         let pixels = group.pixels();
         let fragments = Fragments::new(simd, &planes, group.x, group.y, pixels);

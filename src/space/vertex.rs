@@ -242,7 +242,22 @@ pub(crate) fn stride_of(varyings: usize) -> usize {
     varyings.next_multiple_of(4)
 }
 
+thread_local! {
+    /// The vertices of the last draw: their memory is used again, as fresh pages cost as much as shading.
+    static KEPT: std::cell::Cell<ShadedVertices> = std::cell::Cell::default();
+}
+
+/// Vertices whose memory is kept for the next draw, at most.
+const KEPT_VERTICES: usize = 1 << 19;
+
 impl ShadedVertices {
+    /// Leaves the memory to the thread's next draw.
+    pub(crate) fn recycle(self) {
+        if self.screen.capacity() <= KEPT_VERTICES {
+            KEPT.set(self);
+        }
+    }
+
     pub(crate) fn clip_vertex(&self, index: usize) -> Option<ClipVertex> {
         let mut vertex = ClipVertex { position: *self.clip.get(index)?, varyings: [0.0; MAX_VARYINGS] };
         let source = self.varyings.get(index * self.stride..index * self.stride + self.count)?;
@@ -262,13 +277,10 @@ pub(crate) fn shade_vertices<V: VertexShader>(
 ) -> ShadedVertices {
     let count = shader.varyings().min(MAX_VARYINGS);
     let stride = stride_of(count);
-    let mut shaded = ShadedVertices {
-        screen: vec![ScreenVertex::UNSAFE; vertices.len()],
-        clip: vec![[0.0; 4]; vertices.len()],
-        varyings: vec![0.0; vertices.len() * stride],
-        stride,
-        count,
-    };
+    let mut shaded = ShadedVertices { stride, count, ..KEPT.take() };
+    shaded.screen.resize(vertices.len(), ScreenVertex::UNSAFE);
+    shaded.clip.resize(vertices.len(), [0.0; 4]);
+    shaded.varyings.resize(vertices.len() * stride, 0.0);
     let chunk = if threads <= 1 { vertices.len() } else { vertices.len().div_ceil(threads * 4) }.max(256);
     let mut varyings = shaded.varyings.chunks_mut((chunk * stride).max(1));
     let jobs: Vec<_> = vertices
@@ -281,6 +293,7 @@ pub(crate) fn shade_vertices<V: VertexShader>(
         let mut varyings = varyings.chunks_exact_mut(stride.max(1));
         for ((vertex, screen), clip) in vertices.iter().zip(screen).zip(clip) {
             let values = varyings.next().unwrap_or_default();
+            values.fill(0.0);
             *clip = shader.shade(vertex, values.get_mut(..count).unwrap_or_default());
             *screen = transform.screen(*clip, depth_clamp, snap);
         }
