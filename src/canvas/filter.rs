@@ -159,8 +159,15 @@ impl Canvas<'_> {
     /// Notes that pictures of so many bytes were recorded, and draws them when they are too many.
     pub(super) fn count_pictures(&mut self, bytes: u64) {
         self.pictures = self.pictures.saturating_add(bytes);
-        if self.pictures > MAX_PICTURES && self.layers.is_empty() {
+        if self.pictures <= MAX_PICTURES {
+            return;
+        }
+        if self.layers.is_empty() {
             self.failed = self.flush().err();
+        } else {
+            // Where there is no memory for it, the pictures may still find theirs, or say so when they are made.
+            let _ = self.fold_layer();
+            self.pictures = 0;
         }
     }
 }

@@ -4,6 +4,7 @@ mod aliased;
 mod clip;
 mod drawing;
 mod filter;
+mod fold;
 mod image;
 mod pixels;
 mod scene;

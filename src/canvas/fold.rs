@@ -1,0 +1,144 @@
+//! Layers that hold many pictures are drawn so far before they end.
+//!
+//! A filter's picture is made before the bands are painted, and kept until they are. Within an open layer nothing can be
+//! painted yet; but what the layer has recorded can become one picture, which is what the layer would hold: it
+//! starts out transparent, and pixels over nothing stay as they are.
+
+use std::sync::Arc;
+
+use super::Canvas;
+use super::state::OpenLayerKind;
+use crate::blend::BlendMode;
+use crate::display_list::{ClipId, Command, Draw, Geometry};
+use crate::error::Result;
+use crate::geom::{IntRect, Transform};
+use crate::paint::{FilterQuality, Pattern, PreparedPaint, SpreadMode};
+use crate::render::Renderer;
+use crate::style::Antialias;
+use crate::surface::Pixmap;
+
+impl Canvas<'_> {
+    /// Replaces what the innermost open layer recorded by one picture of it. Where there is no memory for that, all stays
+    /// as it is.
+    pub(super) fn fold_layer(&mut self) -> Result<()> {
+        let Some(bounds) = self.layers.last().map(|layer| layer.kind.bounds()) else { return Ok(()) };
+        let start = self.innermost_start();
+        let inner = self.list.commands.split_off(start);
+        let outer = std::mem::take(&mut self.list.commands);
+        // Draws inside may name clips from outside, and later ones those from inside.
+        let clips = |commands: &[Command]| -> Vec<Command> {
+            commands.iter().filter(|command| matches!(command, Command::Clip(_))).cloned().collect()
+        };
+        let (outer_clips, inner_clips) = (clips(&outer), clips(&inner));
+        let first = outer_clips.len();
+        self.list.commands = outer_clips;
+        self.list.commands.extend(inner);
+        let drawn = self.picture_of(bounds);
+        let inner = self.list.commands.split_off(first);
+        self.list.commands = outer;
+        let paint = match drawn {
+            Ok(paint) => paint,
+            Err(error) => {
+                self.list.commands.extend(inner);
+                return Err(error);
+            }
+        };
+        self.list.commands.extend(inner_clips);
+        let index = self.list.paints.len() as u32;
+        self.list.paints.push(paint);
+        self.list.commands.push(Command::Draw(Draw {
+            geometry: Geometry::Bounds,
+            paint: index,
+            antialias: Antialias::None,
+            blend_mode: BlendMode::SourceOver,
+            clip: ClipId::NONE,
+            bounds,
+        }));
+        Ok(())
+    }
+
+    /// What the recording draws within `bounds`, as a paint.
+    fn picture_of(&mut self, bounds: IntRect) -> Result<PreparedPaint> {
+        let mut pixmap = Pixmap::new(bounds.right.max(1) as u32, bounds.bottom.max(1) as u32)?;
+        Renderer::default().render(&self.list, &mut pixmap.as_mut(), self.settings)?;
+        let mut pattern = Pattern::new(Arc::new(pixmap));
+        // Pixels on pixels are copied.
+        pattern.quality = FilterQuality::Bilinear;
+        (pattern.spread_x, pattern.spread_y) = (SpreadMode::Decal, SpreadMode::Decal);
+        Ok(PreparedPaint::new(&pattern.into(), Transform::IDENTITY, 1.0))
+    }
+
+    /// Where the commands of the innermost open layer start: a filter's have a recording of their own.
+    fn innermost_start(&self) -> usize {
+        if matches!(self.layers.last().map(|layer| &layer.kind), Some(OpenLayerKind::Filter(_))) {
+            return 0;
+        }
+        let mut closed = 0_usize;
+        for (index, command) in self.list.commands.iter().enumerate().rev() {
+            match command {
+                Command::EndLayer(_) | Command::EndMask(..) => closed += 1,
+                Command::BeginLayer(_) | Command::BeginMask(_) if closed == 0 => return index + 1,
+                Command::BeginLayer(_) | Command::BeginMask(_) => closed -= 1,
+                _ => {}
+            }
+        }
+        0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Color;
+    use crate::display_list::Paint;
+    use crate::geom::Rect;
+    use crate::surface::MaskKind;
+
+    /// A picture whose open layers and masks are folded now and then, or never.
+    fn picture(fold: bool) -> Vec<u8> {
+        let mut canvas = Canvas::new(80, 60).unwrap();
+        let fold_now = |canvas: &mut Canvas<'_>| {
+            if fold {
+                canvas.fold_layer().unwrap();
+                let last = canvas.list.commands.last();
+                assert!(matches!(last, Some(Command::Draw(Draw { geometry: Geometry::Bounds, .. }))));
+            }
+        };
+        let color = |r: f32, g: f32, b: f32, a: f32| Color { r, g, b, a };
+        canvas.fill(color(0.9, 0.8, 0.3, 1.0));
+        let mut round = crate::path::Path::new();
+        round.circle((40.0, 30.0), 27.3);
+        canvas.clip_path(&round, crate::style::FillRule::NonZero, Antialias::Analytic);
+        canvas.push_layer(0.7, BlendMode::Multiply);
+        canvas.fill_rect(Rect::from_xywh(10.5, 5.25, 40.0, 30.0), color(0.1, 0.4, 0.8, 0.6));
+        canvas.fill_circle((50.0, 30.0), 14.2, color(0.9, 0.1, 0.2, 0.8));
+        fold_now(&mut canvas);
+        canvas.clip_path(&round, crate::style::FillRule::EvenOdd, Antialias::Analytic);
+        canvas.fill_circle(
+            (30.0, 35.0),
+            13.7,
+            Paint::new(color(0.2, 0.9, 0.5, 0.7)).with_blend_mode(BlendMode::Screen),
+        );
+        canvas.push_layer(0.5, BlendMode::SourceOver);
+        canvas.fill_circle((35.0, 25.0), 9.0, color(0.0, 0.0, 0.0, 0.9));
+        fold_now(&mut canvas);
+        canvas.fill_circle((42.0, 25.0), 9.0, color(1.0, 1.0, 1.0, 0.4));
+        canvas.pop_layer();
+        fold_now(&mut canvas);
+        canvas.push_mask(MaskKind::Luminance);
+        canvas.fill(color(1.0, 1.0, 1.0, 0.8));
+        canvas.fill_circle((40.0, 20.0), 8.5, color(0.1, 0.1, 0.1, 1.0));
+        fold_now(&mut canvas);
+        canvas.fill_circle((28.0, 40.0), 6.5, color(0.4, 0.1, 0.1, 1.0));
+        canvas.pop_mask();
+        canvas.fill_circle((60.0, 20.0), 5.5, color(0.4, 0.1, 0.9, 0.3));
+        canvas.pop_layer();
+        canvas.fill_circle((20.0, 20.0), 5.5, color(0.4, 0.1, 0.9, 0.3));
+        canvas.into_pixmap().data().to_vec()
+    }
+
+    #[test]
+    fn folded_layers_look_the_same() {
+        assert_eq!(picture(true), picture(false));
+    }
+}
