@@ -561,7 +561,7 @@ fn mesh_filters_textures_as_it_is_told() {
     assert_success(&folder.run(&["render", "stripes.svg", "-o", "stripes.png"]));
     let square =
         "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
-    folder.write("square.obj", &format!("mtllib stripes.mtl\nusemtl s\n{square}"));
+    folder.write("square.obj", format!("mtllib stripes.mtl\nusemtl s\n{square}"));
     // The greys of the square's middle row, which is `side` pixels long.
     let greys = |side: u32, filter: &[&str]| {
         let size = format!("{side}x{side}");
