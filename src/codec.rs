@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder as _, ImageFormat, ImageReader, RgbaImage};
+use image::{ExtendedColorType, ImageDecoder as _, ImageEncoder as _, ImageFormat, ImageReader, RgbaImage};
 
 use crate::error::{Error, Result};
 use crate::surface::{Limits, Pixmap};
@@ -43,7 +43,7 @@ impl Pixmap {
     /// [`Error::Format`] if the bytes are not a whole PNG file; [`Error::Limit`] if the picture is over
     /// [`Limits::default`].
     pub fn decode_png(bytes: &[u8]) -> Result<Self> {
-        decode(bytes, ImageFormat::Png, Limits::default())
+        decode(bytes, ImageFormat::Png, Limits::default(), u64::MAX)
     }
 
     /// The picture in a PNG, JPEG, GIF or WebP file's bytes, told apart by how they begin; of an
@@ -52,14 +52,14 @@ impl Pixmap {
     /// # Errors
     /// As [`Pixmap::decode_png`].
     pub fn decode(bytes: &[u8]) -> Result<Self> {
-        Self::decode_within(bytes, Limits::default())
+        Self::decode_within(bytes, u64::MAX)
     }
 
-    /// The same for pictures that are not to be larger than `limits` says.
-    pub(crate) fn decode_within(bytes: &[u8], limits: Limits) -> Result<Self> {
+    /// The same for pictures that take at most so many bytes while they are decoded.
+    pub(crate) fn decode_within(bytes: &[u8], max_bytes: u64) -> Result<Self> {
         let format = image::guess_format(bytes)
             .map_err(|_| Error::Format("the data is not a PNG, JPEG, GIF or WebP picture".to_owned()))?;
-        decode(bytes, format, limits)
+        decode(bytes, format, Limits::default(), max_bytes)
     }
 
     /// The picture in a PNG file.
@@ -73,13 +73,23 @@ impl Pixmap {
     }
 }
 
-fn decode(bytes: &[u8], format: ImageFormat, limits: Limits) -> Result<Pixmap> {
+fn decode(bytes: &[u8], format: ImageFormat, limits: Limits, max_bytes: u64) -> Result<Pixmap> {
     let name = || format!("{format:?}").to_uppercase();
     // The header's size is checked first: a file of a few bytes may claim a picture of gigabytes.
-    let (width, height) = ImageReader::with_format(Cursor::new(bytes), format)
-        .into_dimensions()
+    let decoder = ImageReader::with_format(Cursor::new(bytes), format)
+        .into_decoder()
         .map_err(|error| Error::Format(format!("the {} data is broken: {error}", name())))?;
+    let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     limits.check(width, height)?;
+    // Other pixels than the pixmap's own are held beside it.
+    let others = if color == image::ColorType::Rgba8 { 0 } else { u64::from(color.bytes_per_pixel()) };
+    let held = u64::from(width) * u64::from(height) * (4 + others);
+    if held > max_bytes {
+        let (held, max) = (held >> 20, max_bytes >> 20);
+        return Err(Error::Limit(format!(
+            "a picture of {width} × {height} pixels takes {held} MiB, of which {max} MiB are left"
+        )));
+    }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut decoder_limits = image::Limits::no_limits();
     // Sixteen bits a channel while decoding, and the decoder's own buffers.

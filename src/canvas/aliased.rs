@@ -118,8 +118,8 @@ impl Canvas<'_> {
                 Segment::CubicTo(c1, c2, p) => (Verb::CubicTo, vec![last, c1, c2, p]),
                 Segment::Close => (Verb::LineTo, vec![last, start]),
             };
+            let placed: Vec<Point> = points.iter().map(|p| transform.map(*p)).collect();
             dispatch!(SimdLevel::best(), simd => {
-                let placed: Vec<Point> = points.iter().map(|p| transform.map(*p)).collect();
                 flatten_fill(simd, &[Verb::MoveTo, verb], &placed, &mut chain);
             });
             last = points.last().copied().unwrap_or(last);

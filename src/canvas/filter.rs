@@ -222,3 +222,30 @@ impl Axes {
         grid.is_finite().then_some(Self { to_grid, to_outer, grid })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Color;
+    use crate::filter::{Input, Kind};
+    use crate::surface::MaskKind;
+
+    #[test]
+    fn masks_apply_to_filtered_layers() {
+        let drawn = |filter: bool| {
+            let mut canvas = Canvas::new(24, 16).unwrap();
+            // A filter that changes nothing.
+            let mut offset = Filter::new();
+            offset.add(Kind::Offset { input: Input::SourceGraphic, dx: 0.0, dy: 0.0 });
+            let options = LayerOptions { filter: filter.then(|| Arc::new(offset)), ..LayerOptions::default() };
+            canvas.push_layer_with(&options);
+            canvas.fill_rect(Rect::from_xywh(2.0, 2.0, 20.0, 12.0), Color { r: 0.2, g: 0.4, b: 0.8, a: 1.0 });
+            canvas.push_mask(MaskKind::Alpha);
+            canvas.fill_circle((12.0, 8.0), 5.0, Color { r: 0.0, g: 0.0, b: 0.0, a: 0.7 });
+            canvas.pop_mask();
+            canvas.pop_layer();
+            canvas.into_pixmap().data().to_vec()
+        };
+        assert!(drawn(true) == drawn(false));
+    }
+}

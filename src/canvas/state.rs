@@ -136,7 +136,13 @@ pub(super) struct FilterLayer {
 
 impl FilterLayer {
     /// The command that draws what `list` recorded.
-    pub(super) fn effect(&self, list: DisplayList) -> Command {
+    pub(super) fn effect(&self, mut list: DisplayList) -> Command {
+        if list.commands.iter().any(|command| matches!(command, Command::EndMask(..))) {
+            // A mask applies to a layer, which the filter's own surface is not.
+            let layer = LayerStart::plain(IntRect::from_xywh(0, 0, self.extent.width(), self.extent.height()));
+            list.commands.insert(0, Command::BeginLayer(layer.clone()));
+            list.commands.push(Command::EndLayer(layer));
+        }
         Command::Effect(Effect {
             list: Box::new(list),
             extent: self.extent,

@@ -92,6 +92,13 @@ pub(crate) struct LayerStart {
     pub(crate) clip: ClipId,
 }
 
+impl LayerStart {
+    /// One that is drawn as it is.
+    pub(crate) fn plain(bounds: IntRect) -> Self {
+        Self { bounds, opacity: 255, blend_mode: BlendMode::SourceOver, clip: ClipId::NONE }
+    }
+}
+
 /// A picture made of what a recording of its own draws, by an effect that needs it whole.
 #[derive(Clone, Debug)]
 pub(crate) struct Effect {

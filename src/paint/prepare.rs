@@ -6,9 +6,10 @@ use super::gradient::{Gradient, Placed, place_linear, place_radial, place_sweep}
 use super::pattern::ImagePattern;
 use super::plane::Affine;
 use super::ramp::{Colors, clean_stops};
-use super::shader::{GradientStop, Shader, SpreadMode};
+use super::shader::{FilterQuality, GradientStop, Pattern, Shader, SpreadMode};
 use crate::color::{Color, unit};
 use crate::geom::Transform;
+use crate::surface::Pixmap;
 
 /// A shader in device space. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -51,6 +52,14 @@ impl PreparedPaint {
                 None => Self::Nothing,
             },
         }
+    }
+
+    /// A picture that was drawn for this place, transparent around it: at whole pixels, a copy.
+    pub(crate) fn picture(image: Arc<Pixmap>, to_device: Transform, opacity: f32) -> Self {
+        let mut pattern = Pattern::new(image);
+        pattern.quality = FilterQuality::Bilinear;
+        (pattern.spread_x, pattern.spread_y) = (SpreadMode::Decal, SpreadMode::Decal);
+        Self::new(&pattern.into(), to_device, opacity)
     }
 
     fn from_gradient(placed: Placed, stops: &[GradientStop], spread: SpreadMode, opacity: f32) -> Self {

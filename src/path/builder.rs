@@ -300,4 +300,47 @@ mod tests {
         path.move_to((0.0, 0.0)).line_to((f32::NAN, 1.0));
         assert_eq!(path.control_bounds(), None);
     }
+
+    #[test]
+    fn bounds_follow_every_change() {
+        let mut path = Path::new();
+        let mut other = Path::new();
+        other.move_to((0.0, 0.0)).line_to((1.0, 1.0));
+        type Change = fn(&mut Path, &Path);
+        let changes: [Change; 9] = [
+            |path, _| {
+                path.move_to((5.0, 5.0));
+            },
+            // Replaces the point before.
+            |path, _| {
+                path.move_to((6.0, 7.0));
+            },
+            |path, _| {
+                path.line_to((9.0, 1.0));
+            },
+            |path, _| {
+                path.quad_to((20.0, 3.0), (4.0, 4.0));
+            },
+            |path, _| {
+                path.cubic_to((1.0, 30.0), (-5.0, 0.0), (2.0, 2.0));
+            },
+            |path, _| {
+                path.close();
+            },
+            |path, _| {
+                path.line_to((50.0, 2.0));
+            },
+            |path, other| {
+                path.extend(other, Transform::from_translate(-40.0, 8.0));
+            },
+            |path, _| path.clear(),
+        ];
+        for change in changes {
+            // Asked before and after: what was kept must not outlive the change.
+            let _ = path.control_bounds();
+            change(&mut path, &other);
+            assert_eq!(path.control_bounds(), Rect::from_points(path.points()));
+            assert_eq!(path.clone().control_bounds(), path.control_bounds());
+        }
+    }
 }

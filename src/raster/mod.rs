@@ -28,4 +28,5 @@ pub mod polygon;
 pub(crate) mod sample;
 mod stair;
 pub(crate) mod sweep;
+pub(crate) mod touch;
 pub mod triangulate;

@@ -13,7 +13,7 @@ use crate::raster::bins::Edges;
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
 use crate::raster::sweep::{BlockSink, CoverageRule, sweep, sweep_rect};
-use crate::raster::{exact, kernel, sample};
+use crate::raster::{exact, kernel, sample, touch};
 use crate::style::{Antialias, FillRule};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
@@ -121,10 +121,10 @@ fn accumulate_inner<S: Simd>(
         Antialias::Exact => {
             let edges = &*listed(&mut scratch.edges, edges, true);
             if edges.len() >= kernel::CROWD {
-                exact::add_touching_crowd(simd, &mut scratch.cells, edges, top, frame.strips, rule);
+                touch::add_touching_crowd(simd, &mut scratch.cells, edges, top, frame.strips, rule);
             } else {
-                let trail = &mut exact::Trail::default();
-                exact::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips, trail);
+                let trail = &mut touch::Trail::default();
+                touch::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips, trail);
             }
             for strip in 0..frame.strips {
                 let Some(cells) = scratch.cells.strip(strip) else { break };

@@ -8,7 +8,7 @@ use crate::display_list::{Command, DisplayList, Effect, EffectKind};
 use crate::error::Result;
 use crate::filter::{self, Image, PlacedFilter, Work};
 use crate::geom::{IntRect, Transform};
-use crate::paint::{FilterQuality, Pattern, PreparedPaint, SpreadMode};
+use crate::paint::PreparedPaint;
 use crate::surface::Pixmap;
 
 /// The pictures that the bands need.
@@ -118,10 +118,6 @@ fn paint(image: Image, to_device: Transform, opacity: f32, bounds: IntRect) -> O
     if bounds.is_empty() {
         return None;
     }
-    let mut pattern = Pattern::new(Arc::new(pixmap));
-    // Pixels on pixels are copied.
-    pattern.quality = FilterQuality::Bilinear;
-    (pattern.spread_x, pattern.spread_y) = (SpreadMode::Decal, SpreadMode::Decal);
     let place = to_device.pre_concat(Transform::from_translate(place.left as f32, place.top as f32));
-    Some((PreparedPaint::new(&pattern.into(), place, opacity), bounds))
+    Some((PreparedPaint::picture(Arc::new(pixmap), place, opacity), bounds))
 }

@@ -10,8 +10,6 @@ use crate::canvas::Canvas;
 use crate::display_list::ImagePaint;
 use crate::geom::Rect;
 use crate::paint::FilterQuality;
-#[cfg(feature = "codec")]
-use crate::surface::Limits;
 use crate::surface::Pixmap;
 
 /// An embedded picture that was decoded.
@@ -62,7 +60,7 @@ impl Renderer<'_> {
         if let Some(picture) = self.pictures.iter().find(|picture| Arc::ptr_eq(&picture.bytes, bytes)) {
             return picture.image.clone();
         }
-        let image = match decode(bytes, self.pixels_to_decode()) {
+        let image = match decode(bytes, self.bytes_to_decode()) {
             Ok(picture) if self.count_pixels(picture.width(), picture.height()) => Some(Arc::new(picture)),
             Ok(_) => {
                 self.warnings.add(WarningKind::Image("the pictures are too large together".to_owned()), id);
@@ -79,9 +77,8 @@ impl Renderer<'_> {
 }
 
 #[cfg(feature = "codec")]
-fn decode(bytes: &[u8], max_pixels: u64) -> Result<Pixmap, String> {
-    let limits = Limits { max_pixels, ..Limits::default() };
-    Pixmap::decode_within(bytes, limits).map_err(|error| error.to_string())
+fn decode(bytes: &[u8], max_bytes: u64) -> Result<Pixmap, String> {
+    Pixmap::decode_within(bytes, max_bytes).map_err(|error| error.to_string())
 }
 
 #[cfg(not(feature = "codec"))]

@@ -25,6 +25,9 @@ const MAX_CANVAS_DEPTH: u32 = 16;
 /// The most pixels of all tiles, and of all embedded pictures, that one call keeps: 1 GiB.
 const MAX_PIXELS: u64 = 1 << 28;
 
+/// The most bytes that embedded pictures take, the one that is being decoded included: 1 GiB holds them and the rest.
+const MAX_PICTURE_BYTES: u64 = 896 << 20;
+
 /// What is to do next.
 #[derive(Clone, Copy)]
 pub(super) enum Step<'t> {
@@ -194,11 +197,8 @@ impl<'s> Renderer<'s> {
         self.pixels <= MAX_PIXELS
     }
 
-    /// The most pixels that the next embedded picture may have.
-    ///
-    /// Decoding takes up to 12 bytes for each (16 bits a channel beside the pixmap), so that with what is kept already
-    /// a quarter of what is left never makes more than 1 GiB.
-    pub(super) fn pixels_to_decode(&self) -> u64 {
-        MAX_PIXELS.saturating_sub(self.pixels) / 4
+    /// How many bytes the next embedded picture may take while it is decoded, beside those of the others.
+    pub(super) fn bytes_to_decode(&self) -> u64 {
+        MAX_PICTURE_BYTES.saturating_sub(4 * self.pixels)
     }
 }
