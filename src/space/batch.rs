@@ -13,12 +13,14 @@ pub(crate) const TRIANGLES: usize = 256;
 /// A primitive that was set up.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BatchTriangle {
-    /// Its vertices, the first being the provoking one.
+    /// The vertices that its planes go through.
     pub(crate) vertices: [u32; 3],
     pub(crate) primitive: u32,
     /// Which piece of the primitive it is, where clipping cut it.
     pub(crate) piece: u8,
     pub(crate) front: bool,
+    /// Whether clipping made its vertices; see [`Kind::Clipped`](super::bin::Kind::Clipped).
+    pub(crate) clipped: bool,
     pub(crate) gradients: Gradients,
     /// Depth: value at the first vertex, steps right and down.
     pub(crate) z: [f32; 3],

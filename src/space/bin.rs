@@ -15,6 +15,9 @@ use super::vertex::{FINE, ScreenVertex, ShadedVertices, Snap, Transform};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Triangle,
+    /// A piece that clipping left of a triangle. After its three vertices come the three that its planes go through, and a copy of the
+    /// primitive's first.
+    Clipped,
     /// Half of a point's square: always seen from the front.
     Point,
     /// A line from the first vertex to the second, without its last pixel.
@@ -88,8 +91,8 @@ pub(crate) struct Binning {
     pub(crate) band_rows: i32,
     pub(crate) bands: usize,
     planes: Vec<ClipPlane>,
-    /// The view volume's side planes, for the trivial rejection.
-    sides: [ClipPlane; 4],
+    /// The view volume: as `planes`, but for its sides, which are not the guard band's.
+    volume: Vec<ClipPlane>,
 }
 
 impl Binning {
@@ -110,15 +113,15 @@ impl Binning {
             planes.push(ClipPlane([0.0, 0.0, 1.0, -transform.near]));
             planes.push(ClipPlane([0.0, 0.0, -1.0, 1.0]));
         }
+        let mut volume = planes.clone();
+        volume.extend_from_slice(&ClipPlane::VIEW_VOLUME[..4]);
         planes.extend([
             ClipPlane([1.0, 0.0, 0.0, gx]),
             ClipPlane([-1.0, 0.0, 0.0, gx]),
             ClipPlane([0.0, 1.0, 0.0, gy]),
             ClipPlane([0.0, -1.0, 0.0, gy]),
         ]);
-        let [left, right, bottom, top, ..] = ClipPlane::VIEW_VOLUME;
-        let sides = [left, right, bottom, top];
-        Self { state, transform, snap, extent, area, band_rows: (band_tiles * TILE) as i32, bands, planes, sides }
+        Self { state, transform, snap, extent, area, band_rows: (band_tiles * TILE) as i32, bands, planes, volume }
     }
 
     /// Bins some primitives.
@@ -144,7 +147,7 @@ impl Binning {
             let id = primitive as u32;
             let screen = corners.map(|i| shaded.screen.get(i as usize).copied().unwrap_or(ScreenVertex::UNSAFE));
             if solid && !screen.iter().any(ScreenVertex::is_unsafe) {
-                self.triangle(corners, &screen, id, 0, chunk);
+                self.triangle(Kind::Triangle, corners, &screen, id, 0, chunk);
                 continue;
             }
             match primitives.topology {
@@ -202,7 +205,15 @@ impl Binning {
 
     /// A triangle of safe vertices: dropped, or listed for the bands that it reaches.
     #[inline(always)]
-    fn triangle(&self, vertices: [u32; 3], screen: &[ScreenVertex; 3], primitive: u32, piece: u8, chunk: &mut Chunk) {
+    fn triangle(
+        &self,
+        kind: Kind,
+        vertices: [u32; 3],
+        screen: &[ScreenVertex; 3],
+        primitive: u32,
+        piece: u8,
+        chunk: &mut Chunk,
+    ) {
         let bounds = sample_box(screen.map(|v| v.x()), screen.map(|v| v.y()), &self.extent);
         if bounds.is_empty() {
             chunk.counters.no_samples += 1;
@@ -222,7 +233,7 @@ impl Binning {
             chunk.counters.culled += 1;
             return;
         }
-        self.list(DrawRef { vertices, primitive, piece, kind: Kind::Triangle }, bounds.top, bounds.bottom, chunk);
+        self.list(DrawRef { vertices, primitive, piece, kind }, bounds.top, bounds.bottom, chunk);
     }
 
     /// Lists something for the bands of the rows `top..bottom`, which are inside the area.
@@ -239,6 +250,9 @@ impl Binning {
     }
 
     /// A triangle with a vertex that is not safe: clipped, and its pieces drawn as a fan.
+    ///
+    /// Coverage comes from clipping to the guard band, which cuts few of the edges that neighbours share. Planes through corners
+    /// that far away would be coarse: depths and varyings come from what is left inside of the view volume.
     #[cold]
     fn clipped(&self, corners: [u32; 3], primitive: u32, shaded: &ShadedVertices, chunk: &mut Chunk) {
         let [Some(a), Some(b), Some(c)] = corners.map(|i| shaded.clip_vertex(i as usize)) else { return };
@@ -247,23 +261,48 @@ impl Binning {
             chunk.counters.invalid += 1;
             return;
         }
-        let outside = |planes: &[ClipPlane]| triangle.iter().fold(!0, |all, v| all & outcode(v.position, planes)) != 0;
-        if outside(&self.planes) || outside(&self.sides) {
+        let outside = triangle.iter().fold(!0, |all, v| all & outcode(v.position, &self.volume)) != 0;
+        if outside {
             chunk.counters.outside += 1;
             return;
         }
         chunk.counters.clipped += 1;
         let polygon = clip_polygon(&triangle, &self.planes);
-        let first = (shaded.screen.len() + chunk.screen.len()) as u32;
-        let places: Vec<ScreenVertex> = polygon.iter().map(|v| self.add(v, shaded, chunk)).collect();
-        let Some(a) = places.first() else { return };
-        for (piece, pair) in places.windows(2).skip(1).enumerate() {
-            let screen = [*a, pair[0], pair[1]];
-            if !screen.iter().any(ScreenVertex::is_unsafe) {
-                let second = first + piece as u32 + 1;
-                self.triangle([first, second, second + 1], &screen, primitive, piece as u8, chunk);
+        let seen = self.largest_triangle(&clip_polygon(&triangle, &self.volume));
+        for (piece, pair) in polygon.windows(2).skip(1).enumerate() {
+            let corners = [&polygon[0], &pair[0], &pair[1]];
+            let screen = corners.map(|v| self.on_screen(v));
+            if screen.iter().any(ScreenVertex::is_unsafe) {
+                continue;
+            }
+            let first = (shaded.screen.len() + chunk.screen.len()) as u32;
+            for vertex in corners {
+                self.add(vertex, shaded, chunk);
+            }
+            for vertex in seen.as_ref().map_or(corners, |seen| seen.each_ref()) {
+                self.add(vertex, shaded, chunk);
+            }
+            self.add(&a, shaded, chunk);
+            self.triangle(Kind::Clipped, [first, first + 1, first + 2], &screen, primitive, piece as u8, chunk);
+        }
+    }
+
+    /// The three vertices of a convex polygon that span the largest area on the screen, in its order; `None` where none is spanned.
+    fn largest_triangle(&self, polygon: &[ClipVertex]) -> Option<[ClipVertex; 3]> {
+        let places: Vec<ScreenVertex> = polygon.iter().map(|v| self.on_screen(v)).collect();
+        let mut largest = (0, None);
+        for i in 0..places.len() {
+            for j in i + 1..places.len() {
+                for k in j + 1..places.len() {
+                    let screen = [places[i], places[j], places[k]];
+                    let area = double_area(&screen).abs();
+                    if area > largest.0 && !screen.iter().any(ScreenVertex::is_unsafe) {
+                        largest = (area, Some([polygon[i], polygon[j], polygon[k]]));
+                    }
+                }
             }
         }
+        largest.1
     }
 
     /// A point: a square of its size around it, as two triangles; a pixel's centre on its left or upper side is in.
@@ -345,9 +384,14 @@ impl Binning {
         self.list(DrawRef { vertices, primitive, piece, kind }, top, bottom, chunk);
     }
 
+    /// Where a vertex is that clipping made: between near and far but for rounding.
+    fn on_screen(&self, vertex: &ClipVertex) -> ScreenVertex {
+        self.transform.screen(vertex.position, true, self.snap)
+    }
+
     /// Adds a vertex that clipping made.
     fn add(&self, vertex: &ClipVertex, shaded: &ShadedVertices, chunk: &mut Chunk) -> ScreenVertex {
-        let screen = self.transform.screen(vertex.position, true, self.snap);
+        let screen = self.on_screen(vertex);
         chunk.screen.push(screen);
         chunk.varyings.extend_from_slice(vertex.varyings.get(..shaded.stride).unwrap_or_default());
         screen

@@ -97,6 +97,8 @@ pub(crate) struct Planes<'a> {
     pub(crate) down: [f32; MAX_VARYINGS],
     /// The varyings of the three vertices.
     pub(crate) corners: [&'a [f32]; 3],
+    /// Those of the primitive's first vertex.
+    pub(crate) provoking: &'a [f32],
 }
 
 impl<'a> Planes<'a> {
@@ -105,6 +107,7 @@ impl<'a> Planes<'a> {
     pub(crate) fn load<S: Simd>(&mut self, simd: S, triangle: &BatchTriangle, vertices: Vertices<'a>) {
         self.triangle = *triangle;
         self.corners = triangle.vertices.map(|i| vertices.varyings(i));
+        self.provoking = if triangle.clipped { vertices.varyings(triangle.vertices[0] + 3) } else { self.corners[0] };
         let w = triangle.vertices.map(|i| vertices.screen(i).inverse_w);
         let g = &triangle.gradients;
         let [a, b, c] = self.corners.map(|corner| corner.as_chunks::<4>().0);
@@ -127,6 +130,7 @@ impl<'a> Planes<'a> {
                 primitive: 0,
                 piece: 0,
                 front: true,
+                clipped: false,
                 gradients: super::setup::Gradients::default(),
                 z: [0.0; 3],
                 inverse_w: [1.0, 0.0, 0.0],
@@ -135,6 +139,7 @@ impl<'a> Planes<'a> {
             right: [0.0; MAX_VARYINGS],
             down: [0.0; MAX_VARYINGS],
             corners: [&[]; 3],
+            provoking: &[],
         }
     }
 }
@@ -248,7 +253,7 @@ impl<'a, S: Simd> Fragments<'a, S> {
     /// A varying's value at the provoking vertex, exactly: the primitive's first vertex.
     #[inline(always)]
     pub fn flat(&self, index: usize) -> f32 {
-        self.planes.corners[0].get(index).copied().unwrap_or_default()
+        self.planes.provoking.get(index).copied().unwrap_or_default()
     }
 
     /// A varying's value at vertex `corner` (0 ..= 2) of the triangle; see [`Fragments::barycentrics`] for their order.
@@ -258,7 +263,8 @@ impl<'a, S: Simd> Fragments<'a, S> {
     }
 
     /// The weights of the three vertices in screen space: 1 in all. The order of the second and third is the triangle's,
-    /// or the other way round if it runs counter-clockwise on the screen.
+    /// or the other way round if it runs counter-clockwise on the screen. Where clipping cut the primitive, the vertices are three corners
+    /// of what is seen of it, and weights may be negative beyond them.
     #[inline(always)]
     pub fn barycentrics(&self) -> [f32x8<S>; 3] {
         let g = &self.planes.triangle.gradients;

@@ -355,7 +355,7 @@ fn append(to: &mut Chunk, from: &Chunk, shaded: &ShadedVertices, piece: u8) {
 
 /// Sets up a triangle as traversal does.
 fn set_up(prepared: &Prepared, draw: &DrawRef, vertices: Vertices<'_>) -> Option<super::batch::BatchTriangle> {
-    if draw.kind != Kind::Triangle {
+    if !matches!(draw.kind, Kind::Triangle | Kind::Clipped) {
         return None;
     }
     let mut indices = draw.vertices;
@@ -366,6 +366,9 @@ fn set_up(prepared: &Prepared, draw: &DrawRef, vertices: Vertices<'_>) -> Option
         indices.swap(1, 2);
     }
     let front = prepared.binning.is_front(area > 0);
+    if draw.kind == Kind::Clipped {
+        return Some(traverse::prepare_clipped(&prepared.tests, draw, indices, front, vertices));
+    }
     (area != 0).then(|| traverse::prepare(&prepared.tests, draw, indices, &v, area.abs(), front))
 }
 

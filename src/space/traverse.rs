@@ -93,7 +93,7 @@ impl Walk<'_, '_, '_> {
     #[inline(always)]
     fn draw<S: Simd>(&mut self, simd: S, draw: &DrawRef) {
         match draw.kind {
-            Kind::Triangle | Kind::Point => self.triangle(simd, draw),
+            Kind::Triangle | Kind::Clipped | Kind::Point => self.triangle(simd, draw),
             Kind::Line | Kind::OpenLine => self.line(simd, draw),
         }
     }
@@ -159,7 +159,7 @@ impl Walk<'_, '_, '_> {
                     Some(triangle) => triangle,
                     None => {
                         self.reserve();
-                        prepared.insert(triangle.prepare(&self.traversal.tests))
+                        prepared.insert(triangle.prepare(&self.traversal.tests, self.vertices))
                     }
                 };
                 self.row(simd, prepared, x, y, covered);
@@ -217,7 +217,7 @@ impl Walk<'_, '_, '_> {
                 if prepared.is_none() {
                     self.reserve();
                 }
-                let prepared = prepared.get_or_insert_with(|| triangle.prepare(&self.traversal.tests));
+                let prepared = prepared.get_or_insert_with(|| triangle.prepare(&self.traversal.tests, self.vertices));
                 if self.batch.groups.len() == GROUPS {
                     self.batch.triangles.push(*prepared);
                     self.flush();
@@ -335,7 +335,7 @@ impl Walk<'_, '_, '_> {
         }
         self.reserve();
         let tests = &self.traversal.tests;
-        let prepared = triangle.prepare(tests);
+        let prepared = triangle.prepare(tests, self.vertices);
         let hierarchical = tests.depth.hierarchical && tests.depth.is_on() && tests.stencil.is_none();
         // Outer corners where samples are not at the centre.
         let inset = if ONE { 0.5 } else { 0.0 };
@@ -594,6 +594,7 @@ impl Walk<'_, '_, '_> {
             primitive: draw.primitive,
             piece: draw.piece,
             front: true,
+            clipped: false,
             gradients,
             z,
             inverse_w: gradients.plane(a.inverse_w, b.inverse_w, a.inverse_w),
@@ -688,9 +689,32 @@ struct Lazy {
 
 impl Lazy {
     #[inline(always)]
-    fn prepare(&self, tests: &Tests) -> BatchTriangle {
+    fn prepare(&self, tests: &Tests, vertices: Vertices<'_>) -> BatchTriangle {
+        if self.draw.kind == Kind::Clipped {
+            return prepare_clipped(tests, &self.draw, self.indices, self.front, vertices);
+        }
         prepare(tests, &self.draw, self.indices, &self.v, self.area, self.front)
     }
+}
+
+/// [`prepare`] for a piece of a triangle: its planes go through other vertices; see [`Kind::Clipped`].
+#[cold]
+pub(crate) fn prepare_clipped(
+    tests: &Tests,
+    draw: &DrawRef,
+    corners: [u32; 3],
+    front: bool,
+    vertices: Vertices<'_>,
+) -> BatchTriangle {
+    let mut indices = corners.map(|i| i + 3);
+    let mut v = indices.map(|i| vertices.screen(i));
+    let area = setup::double_area(&v);
+    if area < 0 {
+        // A sliver, the other way round by rounding.
+        v.swap(1, 2);
+        indices.swap(1, 2);
+    }
+    prepare(tests, draw, indices, &v, area.abs(), front)
 }
 
 /// The planes of a triangle that runs clockwise.
@@ -718,6 +742,7 @@ pub(crate) fn prepare(
         primitive: draw.primitive,
         piece: draw.piece,
         front,
+        clipped: draw.kind == Kind::Clipped,
         gradients,
         z,
         inverse_w: gradients.plane(v[0].inverse_w, v[1].inverse_w, v[2].inverse_w),

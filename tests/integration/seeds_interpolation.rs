@@ -428,6 +428,108 @@ fn s087_a_clipped_draw_equals_the_ray_oracle() {
     }
 }
 
+/// The coefficients (right, down, constant, in pixels of a square of `size`) of what is linear on the screen and has, divided by w, the
+/// given values at three places in clip space: Cramer's rule over x, y and w, so that places behind the viewer are no exception.
+fn homogeneous_plane(places: [[f64; 4]; 3], values: [f64; 3], size: f64) -> [f64; 3] {
+    let determinant = |m: [[f64; 3]; 3]| {
+        let minor = |i: usize, j: usize| m[1][i] * m[2][j] - m[1][j] * m[2][i];
+        m[0][0] * minor(1, 2) - m[0][1] * minor(0, 2) + m[0][2] * minor(0, 1)
+    };
+    let rows = places.map(|[x, y, _, w]| [x, y, w]);
+    let whole = determinant(rows);
+    let [a, b, c] = [0, 1, 2].map(|column| {
+        let mut rows = rows;
+        for (row, value) in rows.iter_mut().zip(values) {
+            row[column] = value;
+        }
+        determinant(rows) / whole
+    });
+    // From −1 ..= 1 to pixels, y downwards.
+    [a * 2.0 / size, -b * 2.0 / size, c - a + b]
+}
+
+#[test]
+fn s087_depths_and_varyings_of_clipped_triangles_lie_on_their_planes() {
+    let size = 64;
+    let projection = camera::perspective(1.2, 1.0, 0.1, 100.0);
+    let mut random = Random::new(8787);
+    let (mut compared, mut clipped) = (0, 0);
+    for round in 0..300 {
+        // Floors and walls that run past the camera, thin ones too, and triangles all around it; corners up to 1e5 screens away.
+        let mut within = |r: f64| random.within(-1_000_000..1_000_000) as f64 * r * 1e-6;
+        let along = 50.0 * within(1.0).abs() + 1.0;
+        let scene: [[f64; 3]; 3] = match round % 3 {
+            0 => {
+                let (y, width) = (-0.05 - within(1.0).abs(), 10_f64.powf(within(2.0) - 1.0));
+                let x = within(1.0);
+                [[x - width, y, along], [x + width, y, along], [x, y + within(0.02), -90.0]]
+            }
+            1 => {
+                let x = 0.02 + within(0.5).abs();
+                [[x, within(1.0), 5.0 * within(1.0)], [x + within(0.01), within(1.0), -along], [x, within(1.0), along]]
+            }
+            _ => std::array::from_fn(|_| [within(6.0), within(6.0), within(14.0)]),
+        };
+        let list = projected(&[scene], &projection, |_, corner| [corner as f32 * 2.0 - 1.0, 7.0, corner as f32, 0.0]);
+        let first = list[0].values;
+        let places = [0, 1, 2].map(|i| list[i].position.map(f64::from));
+        let plane = |values: [f64; 3]| homogeneous_plane(places, values, f64::from(size));
+        let z = plane(places.map(|p| 0.5 * (p[2] + p[3])));
+        let inverse_w = plane([1.0; 3]);
+        let over_w = plane([0, 1, 2].map(|i| f64::from(list[i].values[0])));
+        let (seen, provoking) = (Mutex::new(Vec::new()), Mutex::new(Vec::new()));
+        let shader = pixel_fn(4, |fragment: &Fragment| {
+            seen.lock().unwrap().push(*fragment);
+            Some([1.0; 4])
+        });
+        let mut target = Target::new(size, size).unwrap();
+        let counters = counting(size).draw(&mut target, &Primitives::triangles(&list), &pass(), &shader);
+        counting(size).draw(&mut target, &Primitives::triangles(&list), &pass(), &Provoking(&provoking));
+        assert!(provoking.into_inner().unwrap().iter().all(|values| *values == first), "round {round}");
+        clipped += counters.clipped;
+        for f in seen.into_inner().unwrap() {
+            let at = |[a, b, c]: [f64; 3]| a * (f64::from(f.x) + 0.5) + b * (f64::from(f.y) + 0.5) + c;
+            let w = 1.0 / at(inverse_w);
+            // Coverage is decided within 1/512 pixel: a centre may lie as far beyond the plane's own sides.
+            if !(0.11..90.0).contains(&w) {
+                continue;
+            }
+            compared += 1;
+            let slope = z[0].abs() + z[1].abs();
+            assert!(
+                (f64::from(f.depth) - at(z)).abs() < 2e-6 + slope / 4096.0,
+                "round {round} at {}, {}: {} {}, slope {slope}",
+                f.x,
+                f.y,
+                f.depth,
+                at(z)
+            );
+            let expected = at(over_w) * w;
+            let slope = w * ((over_w[0] - expected * inverse_w[0]).abs() + (over_w[1] - expected * inverse_w[1]).abs());
+            assert!(
+                (f64::from(f.varyings[0]) - expected).abs() < 1e-4 + slope / 1024.0,
+                "round {round} at {}, {}: {} {expected}, slope {slope}",
+                f.x,
+                f.y,
+                f.varyings[0]
+            );
+            assert!((f.varyings[1] - 7.0).abs() < 1e-4, "{}", f.varyings[1]);
+        }
+    }
+    assert!(compared > 30_000 && clipped > 150, "{compared} {clipped}");
+}
+
+/// Notes the values of the provoking vertex.
+struct Provoking<'a>(&'a Mutex<Vec<[f32; 4]>>);
+
+impl FragmentShader for Provoking<'_> {
+    #[inline(always)]
+    fn shade<S: Simd>(&self, f: &Fragments<'_, S>) -> Shade<S> {
+        self.0.lock().unwrap().push([0, 1, 2, 3].map(|i| f.flat(i)));
+        Shade::color([f.varying(0); 4])
+    }
+}
+
 #[test]
 fn s088_the_four_clip_cases() {
     let vertex = |p: [f32; 4], v: f32| ClipVertex::new(p, &[v]);
