@@ -35,57 +35,96 @@ fn slice<'a>(buffers: &'a [Vec<u8>], view: &gltf::buffer::View<'_>, offset: usiz
     buffer.get(start..view.offset().checked_add(end).ok_or_else(fault)?).ok_or_else(fault)
 }
 
-/// All values of an accessor, `N` components each; one with fewer components is padded by `fill`, more are cut off.
-pub(super) fn read<const N: usize>(accessor: &Accessor<'_>, buffers: &[Vec<u8>], fill: f64) -> Result<Vec<[f64; N]>> {
-    let kind = accessor.data_type();
-    let (component, components) = (size_of(kind), accessor.dimensions().multiplicity());
-    let (count, element) = (accessor.count(), component * components);
-    let broken = |what: &str| Error::Format(format!("accessor {}: {what}", accessor.index()));
-    let parse = |bytes: &[u8]| -> Option<[f64; N]> {
+/// An accessor whose values can be had one by one: several primitives may use parts of the same one.
+pub(super) struct Values<'a> {
+    kind: DataType,
+    normalized: bool,
+    components: usize,
+    count: usize,
+    stride: usize,
+    /// `None` stands for zeros.
+    bytes: Option<&'a [u8]>,
+    /// Sparse values in the order of their places.
+    replaced: Vec<(usize, &'a [u8])>,
+}
+
+impl<'a> Values<'a> {
+    /// Checks that all of an accessor lies in its buffers.
+    pub(super) fn new(accessor: &Accessor<'_>, buffers: &'a [Vec<u8>]) -> Result<Self> {
+        let kind = accessor.data_type();
+        let (component, components) = (size_of(kind), accessor.dimensions().multiplicity());
+        let (count, element) = (accessor.count(), component * components);
+        let broken = |what: &str| Error::Format(format!("accessor {}: {what}", accessor.index()));
+        let mut stride = element;
+        let bytes = match accessor.view() {
+            Some(view) => {
+                stride = view.stride().unwrap_or(element);
+                let length =
+                    count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(element));
+                let length = length.ok_or_else(|| broken("its count is beyond the buffer"))?;
+                Some(slice(buffers, &view, accessor.offset(), length)?)
+            }
+            None => {
+                // Zeros, as the specification says; no more than the file could have held.
+                if count > buffers.iter().map(Vec::len).sum() {
+                    return Err(broken("its count is beyond the buffers"));
+                }
+                None
+            }
+        };
+        let mut replaced = Vec::new();
+        if let Some(sparse) = accessor.sparse() {
+            let (indices, new) = (sparse.indices(), sparse.values());
+            let size = match indices.index_type() {
+                IndexType::U8 => 1,
+                IndexType::U16 => 2,
+                IndexType::U32 => 4,
+            };
+            let many = sparse.count();
+            let too_many = || broken("its sparse part is beyond the buffer");
+            let places =
+                slice(buffers, &indices.view(), indices.offset(), many.checked_mul(size).ok_or_else(too_many)?)?;
+            let data = slice(buffers, &new.view(), new.offset(), many.checked_mul(element).ok_or_else(too_many)?)?;
+            for (place, data) in places.chunks_exact(size).zip(data.chunks_exact(element.max(1))) {
+                let index = place.iter().rev().fold(0, |index, byte| index << 8 | usize::from(*byte));
+                if index >= count {
+                    return Err(broken("a sparse index is beyond its count"));
+                }
+                replaced.push((index, data));
+            }
+            replaced.sort_by_key(|(index, _)| *index);
+        }
+        Ok(Self { kind, normalized: accessor.normalized(), components, count, stride, bytes, replaced })
+    }
+
+    /// Indices: one whole number each.
+    pub(super) fn of_indices(accessor: &Accessor<'_>, buffers: &'a [Vec<u8>]) -> Result<Self> {
+        let values = Self::new(accessor, buffers)?;
+        if values.components != 1 || !matches!(values.kind, DataType::U8 | DataType::U16 | DataType::U32) {
+            return Err(Error::Format(format!("accessor {}: indices must be unsigned integers", accessor.index())));
+        }
+        Ok(values)
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.count
+    }
+
+    /// A value, `N` components of it; where it has fewer, `fill` stands for the others, more are cut off.
+    pub(super) fn get<const N: usize>(&self, index: usize, fill: f64) -> Option<[f64; N]> {
+        if index >= self.count {
+            return None;
+        }
+        let own = self.replaced.binary_search_by_key(&index, |(place, _)| *place);
+        let bytes = match (own.ok().and_then(|i| self.replaced.get(i)), self.bytes) {
+            (Some((_, bytes)), _) => bytes,
+            (None, Some(bytes)) => bytes.get(index * self.stride..)?,
+            (None, None) => return Some([0.0; N]),
+        };
         let mut out = [fill; N];
-        for (i, value) in out.iter_mut().enumerate().take(components) {
-            *value = number(kind, bytes.get(i * component..)?, accessor.normalized())?;
+        for (i, value) in out.iter_mut().enumerate().take(self.components) {
+            *value = number(self.kind, bytes.get(i * size_of(self.kind)..)?, self.normalized)?;
         }
         Some(out)
-    };
-    let mut values = match accessor.view() {
-        Some(view) => {
-            let stride = view.stride().unwrap_or(element);
-            let length = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(element));
-            let length = length.ok_or_else(|| broken("its count is beyond the buffer"))?;
-            let bytes = slice(buffers, &view, accessor.offset(), length)?;
-            let mut values = Vec::with_capacity(count);
-            for i in 0..count {
-                let value = bytes.get(i * stride..).and_then(parse);
-                values.push(value.ok_or_else(|| broken("its count is beyond the buffer"))?);
-            }
-            values
-        }
-        None => {
-            // Zeros, as the specification says; no more than the file could have held.
-            let all: usize = buffers.iter().map(Vec::len).sum();
-            if count > all {
-                return Err(broken("its count is beyond the buffers"));
-            }
-            vec![[0.0; N]; count]
-        }
-    };
-    if let Some(sparse) = accessor.sparse() {
-        let (indices, new) = (sparse.indices(), sparse.values());
-        let size = match indices.index_type() {
-            IndexType::U8 => 1,
-            IndexType::U16 => 2,
-            IndexType::U32 => 4,
-        };
-        let count = sparse.count();
-        let too_many = || broken("its sparse part is beyond the buffer");
-        let places = slice(buffers, &indices.view(), indices.offset(), count.checked_mul(size).ok_or_else(too_many)?)?;
-        let data = slice(buffers, &new.view(), new.offset(), count.checked_mul(element).ok_or_else(too_many)?)?;
-        for (place, data) in places.chunks_exact(size).zip(data.chunks_exact(element.max(1))) {
-            let index = place.iter().rev().fold(0, |index, byte| index << 8 | usize::from(*byte));
-            *values.get_mut(index).ok_or_else(|| broken("a sparse index is beyond its count"))? =
-                parse(data).ok_or_else(too_many)?;
-        }
     }
-    Ok(values)
 }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use gltf::mesh::{Mode, Semantic};
 use gltf::texture::WrappingMode;
 
-use super::{Model, accessor, base64, referenced};
+use super::accessor::Values;
+use super::{Model, base64, referenced};
 use crate::error::{Error, Result};
 use crate::scene::{AlphaMode, Camera, Material, Mesh, MeshVertex, Node, Projection, Scene, Shading};
 use crate::space::{Address, Filter, Sampler, Texture, Topology, camera};
@@ -25,6 +26,8 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
     let file = gltf::Gltf::from_slice(bytes).map_err(unsound)?;
     let mut warnings = Vec::new();
     let buffers = buffers(&file, folder)?;
+    let size = bytes.len().saturating_add(buffers.iter().map(Vec::len).sum());
+    let mut budget = Budget::new(size);
     let mut scene = Scene::new();
     let textures = textures(&file, &buffers, folder, &mut warnings);
     for material in file.materials() {
@@ -36,7 +39,7 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
     for mesh in file.meshes() {
         let mut numbers = Vec::new();
         for primitive in mesh.primitives() {
-            if let Some(mut part) = mesh_of(&primitive, &buffers, &mut warnings)? {
+            if let Some(mut part) = mesh_of(&primitive, &buffers, &mut budget, &mut warnings)? {
                 part.material = primitive.material().index().unwrap_or(fallback);
                 scene.meshes.push(part);
                 numbers.push(scene.meshes.len() - 1);
@@ -84,7 +87,12 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
     }
     let reached = world.len();
     if reached < scene.nodes.len() {
-        warnings.push(format!("{} nodes are outside of the scene, or come twice", scene.nodes.len() - reached));
+        warnings.push(format!("{} nodes are outside of the scene; left out", scene.nodes.len() - reached));
+    }
+    let named: usize =
+        world.iter().filter_map(|(node, _)| scene.nodes.get(*node)).map(|node| node.children.len()).sum();
+    if named + scene.roots.len() > reached {
+        warnings.push("nodes are children of several nodes, or of themselves: they are drawn once".to_owned());
     }
     Ok(Model { scene, warnings })
 }
@@ -122,42 +130,64 @@ fn textures(
     folder: Option<&Path>,
     warnings: &mut Vec<String>,
 ) -> Vec<Option<Arc<Texture>>> {
+    // Files may name one picture a thousand times.
+    let mut done: Vec<(usize, Sampler, Option<Arc<Texture>>)> = Vec::new();
     let mut out = Vec::new();
     for texture in file.textures() {
-        let bytes = match texture.source().source() {
-            gltf::image::Source::View { view, .. } => {
-                let range = view.offset()..view.offset().saturating_add(view.length());
-                let data = buffers.get(view.buffer().index()).and_then(|buffer| buffer.get(range));
-                data.map(<[u8]>::to_vec).ok_or_else(|| "its buffer view is beyond the buffer".to_owned())
-            }
-            gltf::image::Source::Uri { uri, .. } if uri.starts_with("data:") => {
-                base64::data_uri(uri).ok_or_else(|| "broken data URI".to_owned())
-            }
-            gltf::image::Source::Uri { uri, .. } => referenced(folder, &base64::unescape(uri)),
-        };
-        let address = |mode: WrappingMode| match mode {
-            WrappingMode::Repeat => Address::Wrap,
-            WrappingMode::ClampToEdge => Address::Clamp,
-            WrappingMode::MirroredRepeat => Address::Mirror,
-        };
-        let own = texture.sampler();
-        let filter = match (own.mag_filter(), own.min_filter()) {
-            (Some(gltf::texture::MagFilter::Nearest), _) => Filter::Nearest,
-            // Smaller sizes are not asked for. Where the file does not say, they are the better choice.
-            (_, Some(gltf::texture::MinFilter::Linear | gltf::texture::MinFilter::Nearest)) => Filter::Bilinear,
-            _ => Filter::Trilinear,
-        };
-        let sampler = Sampler { address: [address(own.wrap_s()), address(own.wrap_t()), Address::Clamp], filter };
-        let loaded = bytes.and_then(|bytes| picture(&bytes, sampler));
-        out.push(match loaded {
-            Ok(texture) => Some(texture),
-            Err(text) => {
-                warnings.push(format!("texture {} is left out: {text}", texture.index()));
-                None
-            }
+        let (image, sampler) = (texture.source().index(), sampler_of(&texture.sampler()));
+        if let Some((_, _, same)) = done.iter().find(|(i, s, _)| (*i, *s) == (image, sampler)) {
+            out.push(same.clone());
+            continue;
+        }
+        let loaded = image_bytes(&texture.source(), buffers, folder).and_then(|(name, bytes)| {
+            picture(&bytes, sampler).map_err(|text| if name.is_empty() { text } else { format!("{name}: {text}") })
         });
+        let loaded =
+            loaded.map_err(|text| warnings.push(format!("texture {} is left out: {text}", texture.index()))).ok();
+        done.push((image, sampler, loaded.clone()));
+        out.push(loaded);
     }
     out
+}
+
+fn sampler_of(own: &gltf::texture::Sampler<'_>) -> Sampler {
+    let address = |mode: WrappingMode| match mode {
+        WrappingMode::Repeat => Address::Wrap,
+        WrappingMode::ClampToEdge => Address::Clamp,
+        WrappingMode::MirroredRepeat => Address::Mirror,
+    };
+    let filter = match (own.mag_filter(), own.min_filter()) {
+        (Some(gltf::texture::MagFilter::Nearest), _) => Filter::Nearest,
+        // Smaller sizes are not asked for. Where the file does not say, they are the better choice.
+        (_, Some(gltf::texture::MinFilter::Linear | gltf::texture::MinFilter::Nearest)) => Filter::Bilinear,
+        _ => Filter::Trilinear,
+    };
+    Sampler { address: [address(own.wrap_s()), address(own.wrap_t()), Address::Clamp], filter }
+}
+
+/// The file name, empty for one inside of the model, and the bytes of a picture.
+fn image_bytes(
+    image: &gltf::Image<'_>,
+    buffers: &[Vec<u8>],
+    folder: Option<&Path>,
+) -> std::result::Result<(String, Vec<u8>), String> {
+    match image.source() {
+        gltf::image::Source::View { view, .. } => {
+            let range = view.offset()..view.offset().saturating_add(view.length());
+            let data = buffers.get(view.buffer().index()).and_then(|buffer| buffer.get(range));
+            let data = data.map(<[u8]>::to_vec).ok_or_else(|| "its buffer view is beyond the buffer".to_owned())?;
+            Ok((String::new(), data))
+        }
+        gltf::image::Source::Uri { uri, .. } if uri.starts_with("data:") => {
+            let data = base64::data_uri(uri).ok_or_else(|| "broken data URI".to_owned())?;
+            Ok((String::new(), data))
+        }
+        gltf::image::Source::Uri { uri, .. } => {
+            let name = base64::unescape(uri);
+            let data = referenced(folder, &name)?;
+            Ok((name, data))
+        }
+    }
 }
 
 /// A picture's bytes as a texture.
@@ -185,35 +215,86 @@ fn material_of(material: &gltf::Material<'_>, textures: &[Option<Arc<Texture>>])
     }
 }
 
-/// A glTF primitive as a mesh; `None` without positions.
-fn mesh_of(primitive: &gltf::Primitive<'_>, buffers: &[Vec<u8>], warnings: &mut Vec<String>) -> Result<Option<Mesh>> {
+/// What meshes may take: files can name the same data as often as they like.
+struct Budget {
+    left: usize,
+}
+
+impl Budget {
+    /// Bytes that a vertex takes as it is kept and as it is drawn.
+    const VERTEX: usize = 160;
+    /// What small files may take, too.
+    const LEAST: usize = 32 << 20;
+
+    fn new(bytes: usize) -> Self {
+        Self { left: bytes.saturating_mul(64).max(Self::LEAST) }
+    }
+
+    fn take(&mut self, vertices: usize, indices: usize) -> Result<()> {
+        let size = vertices.saturating_mul(Self::VERTEX).saturating_add(indices.saturating_mul(4));
+        self.left = self.left.checked_sub(size).ok_or_else(|| {
+            Error::Limit("its meshes name the same data so often that they take more than 64 times its size".to_owned())
+        })?;
+        Ok(())
+    }
+}
+
+/// A glTF primitive as a mesh of the vertices that it uses; `None` without positions.
+fn mesh_of(
+    primitive: &gltf::Primitive<'_>,
+    buffers: &[Vec<u8>],
+    budget: &mut Budget,
+    warnings: &mut Vec<String>,
+) -> Result<Option<Mesh>> {
     let Some(positions) = primitive.get(&Semantic::Positions) else {
         warnings.push(format!("primitive {} has no positions; left out", primitive.index()));
         return Ok(None);
     };
-    let positions = accessor::read::<3>(&positions, buffers, 0.0)?;
-    let normals = primitive.get(&Semantic::Normals).map(|a| accessor::read::<3>(&a, buffers, 0.0)).transpose()?;
+    let values = |accessor: Option<gltf::Accessor<'_>>| accessor.map(|a| Values::new(&a, buffers)).transpose();
+    let positions = Values::new(&positions, buffers)?;
+    let normals = values(primitive.get(&Semantic::Normals))?;
     let set = primitive.material().pbr_metallic_roughness().base_color_texture().map_or(0, |info| info.tex_coord());
-    let uvs = primitive.get(&Semantic::TexCoords(set)).map(|a| accessor::read::<2>(&a, buffers, 0.0)).transpose()?;
-    let colors = primitive.get(&Semantic::Colors(0)).map(|a| accessor::read::<4>(&a, buffers, 1.0)).transpose()?;
-    let vertices: Vec<MeshVertex> = positions
-        .iter()
-        .enumerate()
-        .map(|(i, position)| {
-            let plain = MeshVertex::default();
-            let at =
-                |values: &Option<Vec<[f64; 3]>>| values.as_ref().and_then(|v| v.get(i)).map(|v| v.map(|v| v as f32));
-            MeshVertex {
-                position: position.map(|v| v as f32),
-                normal: at(&normals).unwrap_or(plain.normal),
-                uv: uvs.as_ref().and_then(|v| v.get(i)).map_or(plain.uv, |v| v.map(|v| v as f32)),
-                color: colors.as_ref().and_then(|v| v.get(i)).map_or(plain.color, |v| v.map(|v| v as f32)),
+    let uvs = values(primitive.get(&Semantic::TexCoords(set)))?;
+    let colors = values(primitive.get(&Semantic::Colors(0)))?;
+    let vertex = |i: usize| {
+        let plain = MeshVertex::default();
+        let single = |v: [f64; 3]| v.map(|v| v as f32);
+        MeshVertex {
+            position: positions.get(i, 0.0).map_or(plain.position, single),
+            normal: normals.as_ref().and_then(|v| v.get(i, 0.0)).map_or(plain.normal, single),
+            uv: uvs.as_ref().and_then(|v| v.get::<2>(i, 0.0)).map_or(plain.uv, |v| v.map(|v| v as f32)),
+            color: colors.as_ref().and_then(|v| v.get::<4>(i, 1.0)).map_or(plain.color, |v| v.map(|v| v as f32)),
+        }
+    };
+    let (vertices, indices) = match primitive.indices() {
+        Some(indices) => {
+            let values = Values::of_indices(&indices, buffers)?;
+            let read = |i: usize| values.get(i, 0.0).map_or(0, |[index]: [f64; 1]| index as u32);
+            let (all, count) = (positions.len(), values.len());
+            // Many primitives may share one accessor, of which each uses a part.
+            if count < all {
+                budget.take(count, 2 * count)?;
+                let indices: Vec<u32> = (0..count).map(read).collect();
+                let mut used = indices.clone();
+                used.sort_unstable();
+                used.dedup();
+                // Indices beyond the vertices stay beyond them.
+                let place = |index: u32| match used.binary_search(&index) {
+                    Ok(place) if (index as usize) < all => place as u32,
+                    _ => u32::MAX,
+                };
+                let indices = indices.into_iter().map(place).collect();
+                used.retain(|index| (*index as usize) < all);
+                (used.into_iter().map(|i| vertex(i as usize)).collect(), indices)
+            } else {
+                budget.take(all, count)?;
+                ((0..all).map(vertex).collect::<Vec<_>>(), (0..count).map(read).collect())
             }
-        })
-        .collect();
-    let indices = match primitive.indices() {
-        Some(indices) => accessor::read::<1>(&indices, buffers, 0.0)?.into_iter().map(|[i]| i as u32).collect(),
-        None => (0..vertices.len() as u32).collect(),
+        }
+        None => {
+            budget.take(positions.len(), positions.len())?;
+            ((0..positions.len()).map(vertex).collect(), (0..positions.len() as u32).collect())
+        }
     };
     let topology = match primitive.mode() {
         Mode::Triangles => Topology::Triangles,
@@ -225,9 +306,15 @@ fn mesh_of(primitive: &gltf::Primitive<'_>, buffers: &[Vec<u8>], warnings: &mut 
         Mode::Points => Topology::Points,
     };
     let mut mesh = Mesh { vertices, indices, topology, material: 0 };
+    let beyond = mesh.indices.iter().filter(|index| **index as usize >= mesh.vertices.len()).count();
+    if beyond > 0 {
+        warnings.push(format!("{beyond} indices name vertices that are not there; what they belong to is left out"));
+    }
     if normals.is_none() {
-        // The specification asks for flat normals.
-        if !mesh.triangles().is_empty() {
+        // The specification asks for flat normals: a vertex for each corner.
+        let triangles = mesh.triangles();
+        if !triangles.is_empty() {
+            budget.take(3 * triangles.len(), 3 * triangles.len())?;
             mesh.flat_normals();
         }
     }

@@ -69,7 +69,9 @@ fn material_of(material: &tobj::Material, folder: Option<&Path>, warnings: &mut 
     let texture = material.diffuse_texture.as_ref().and_then(|name| {
         // Options may stand before the name.
         let file = name.split_whitespace().last().unwrap_or(name).replace('\\', "/");
-        match referenced(folder, &file).and_then(|bytes| picture(&bytes, sampler)) {
+        match referenced(folder, &file)
+            .and_then(|bytes| picture(&bytes, sampler).map_err(|text| format!("{file}: {text}")))
+        {
             Ok(texture) => Some(texture),
             Err(text) => {
                 warnings.push(format!("texture is left out: {text}"));

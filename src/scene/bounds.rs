@@ -65,8 +65,9 @@ impl Aabb {
         if self.is_empty() {
             return 0.0;
         }
-        let d: [f32; 3] = std::array::from_fn(|i| self.max[i] * 0.5 - self.min[i] * 0.5);
-        (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
+        // In double precision squares of 1e30 are numbers.
+        let d: [f64; 3] = std::array::from_fn(|i| 0.5 * (f64::from(self.max[i]) - f64::from(self.min[i])));
+        (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt() as f32
     }
 
     /// The eight corners.

@@ -46,17 +46,23 @@ impl Mesh {
         Aabb::of_points(self.vertices.iter().map(|v| v.position))
     }
 
-    /// The corners of each triangle, as vertex numbers.
+    /// The corners of each triangle, as vertex numbers; triangles that name vertices that are not there are left out.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
+        self.numbered_triangles().flatten().collect()
+    }
+
+    /// The triangles by their numbers, `None` for one that names a vertex that is not there.
+    fn numbered_triangles(&self) -> impl Iterator<Item = Option<[u32; 3]>> {
         let primitives = crate::space::Primitives {
             vertices: &self.vertices,
             indices: Some(&self.indices),
             topology: self.topology,
         };
-        match self.topology {
-            Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => primitives.iter().collect(),
-            _ => Vec::new(),
-        }
+        let count = match self.topology {
+            Topology::Triangles | Topology::TriangleStrip | Topology::TriangleFan => primitives.count(),
+            _ => 0,
+        };
+        (0..count).map(move |number| primitives.corners(number))
     }
 
     /// Gives each vertex the mean of the normals of its triangles, weighted by their areas.
@@ -79,9 +85,13 @@ impl Mesh {
 
     /// Gives each triangle vertices of its own, with its normal.
     pub fn flat_normals(&mut self) {
-        let triangles = self.triangles();
-        let mut vertices = Vec::with_capacity(triangles.len() * 3);
-        for triangle in triangles {
+        let mut vertices = Vec::with_capacity(self.indices.len());
+        for triangle in self.numbered_triangles() {
+            // One that names a vertex that is not there keeps its number, and has no area.
+            let Some(triangle) = triangle else {
+                vertices.extend([MeshVertex::default(); 3]);
+                continue;
+            };
             let normal = unit(self.face_normal(triangle)).unwrap_or([0.0, 0.0, 1.0]);
             let corners = triangle.map(|i| self.vertices.get(i as usize).copied().unwrap_or_default());
             vertices.extend(corners.map(|vertex| MeshVertex { normal, ..vertex }));

@@ -550,6 +550,45 @@ fn mesh_names_its_picture_and_writes_depths() {
 }
 
 #[test]
+fn mesh_frames_what_it_draws() {
+    let folder = Folder::new();
+    let boxed = "v -4 -1 -1\nv 4 -1 -1\nv 4 1 -1\nv -4 1 1\nv 4 -1 1\nv -4 -1 1\nf 1 2 3\nf 4 5 6\nf 1 3 4\nf 2 5 4\n";
+    folder.write("box.obj", boxed);
+    let whole = ["front", "back", "left", "right", "top", "bottom", "iso"].map(|view| vec!["--view", view]);
+    let more = [vec!["--ortho"], vec!["--ortho", "--view", "left"], vec!["--fov", "120"], vec!["--up-axis", "z"]];
+    for view in whole.into_iter().chain(more) {
+        for size in ["200x200", "300x100", "100x300"] {
+            let draw = ["mesh", "box.obj", "-o", "out.png", "--cull", "none", "--size", size];
+            assert_success(&folder.run(&[&draw[..], &view].concat()));
+            let picture = folder.read("out.png");
+            let (width, height) = (picture.width(), picture.height());
+            let drawn: Vec<(u32, u32)> = (0..height)
+                .flat_map(|y| (0..width).map(move |x| (x, y)))
+                .filter(|(x, y)| picture.pixel(*x, *y).unwrap()[3] > 0)
+                .collect();
+            let [left, right] = [drawn.iter().map(|p| p.0).min(), drawn.iter().map(|p| p.0).max()].map(Option::unwrap);
+            let [top, bottom] = [drawn.iter().map(|p| p.1).min(), drawn.iter().map(|p| p.1).max()].map(Option::unwrap);
+            // Nothing is cut off, and one of the sides is filled for the most part.
+            assert!(left > 0 && top > 0 && right < width - 1 && bottom < height - 1, "{view:?} {size}");
+            let filled = ((right - left) as f32 / width as f32).max((bottom - top) as f32 / height as f32);
+            assert!(filled > 0.45, "{view:?} {size}: {filled}");
+        }
+    }
+    // What cannot be framed is said; a camera that is given draws it. What holds nothing is warned of.
+    folder.write("far.obj", "v -1e30 -1e30 0\nv 1e30 -1e30 0\nv 0 1e30 0\nf 1 2 3\n");
+    assert_failure(&folder.run(&["mesh", "far.obj", "-o", "far.png"]), "--near");
+    let given = ["--eye", "0,0,3", "--at", "0,0,0", "--near", "1", "--far", "5", "--size", "40x40"];
+    assert_success(&folder.run(&[&["mesh", "far.obj", "-o", "far.png"][..], &given].concat()));
+    assert!(folder.read("far.png").data().as_chunks::<4>().0.iter().all(|pixel| pixel[3] == 255));
+    folder.write("empty.obj", "v 0 0 0\n");
+    let output = folder.run(&["mesh", "empty.obj", "-o", "empty.png"]);
+    assert!(
+        output.status.success() && String::from_utf8_lossy(&output.stderr).contains("nothing to draw"),
+        "{output:?}"
+    );
+}
+
+#[test]
 fn mesh_filters_textures_as_it_is_told() {
     let folder = Folder::new();
     let stripes: String =

@@ -193,6 +193,87 @@ fn within_bounds(path: &std::path::Path) -> std::process::Output {
     std::process::Command::new("sh").args(["-c", &script, program]).arg(path).output().unwrap()
 }
 
+/// As many primitives as asked for, each of all of the same triangles.
+fn shared(primitives: usize, vertices: usize, kind: &str, component: u32) -> Vec<u8> {
+    let positions = (0..vertices).flat_map(|i| [(i % 100) as f32, (i / 100) as f32, 0.0]);
+    let mut bytes: Vec<u8> = positions.flat_map(f32::to_le_bytes).collect();
+    let views = format!(
+        r#"{{"buffer":0,"byteLength":{}}},{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#,
+        bytes.len(),
+        bytes.len(),
+        4 * vertices
+    );
+    bytes.extend((0..vertices as u32).flat_map(u32::to_le_bytes));
+    let part = vec![r#"{"attributes":{"POSITION":0},"indices":1}"#; primitives].join(",");
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{part}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":{vertices},"type":"VEC3","min":[0,0,0],"max":[99,9999,0]}},
+        {{"bufferView":1,"componentType":{component},"count":{vertices},"type":"{kind}"}}],"bufferViews":[{views}],
+        "buffers":[{{"byteLength":{},"uri":"data:application/octet-stream;base64,{}"}}]}}"#,
+        bytes.len(),
+        base64(&bytes)
+    )
+    .into_bytes()
+}
+
+#[test]
+fn data_named_often_is_refused_and_parts_of_it_are_not() {
+    let decode = |bytes: Vec<u8>| Model::decode(&bytes, ModelFormat::Gltf, None);
+    let error = decode(shared(3_000, 30_000, "SCALAR", 5125)).unwrap_err();
+    assert!(error.to_string().contains("64 times"), "{error}");
+    assert!(decode(shared(20, 3_000, "SCALAR", 5125)).is_ok());
+    for error in [decode(shared(1, 30, "SCALAR", 5126)).unwrap_err(), decode(shared(1, 15, "VEC2", 5123)).unwrap_err()]
+    {
+        assert!(error.to_string().contains("indices must be unsigned integers"), "{error}");
+    }
+    // Indices of a part: three of 3,000 vertices are kept.
+    let part = String::from_utf8(shared(2_000, 3_000, "SCALAR", 5125)).unwrap();
+    let part = part.replace(r#""componentType":5125,"count":3000"#, r#""componentType":5125,"count":3"#);
+    let model = decode(part.into_bytes()).unwrap();
+    assert_eq!(model.scene.meshes.len(), 2_000);
+    for mesh in &model.scene.meshes {
+        let places: Vec<_> = mesh.triangles()[0].iter().map(|i| mesh.vertices[*i as usize].position).collect();
+        assert_eq!((mesh.vertices.len(), places), (3, vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]));
+    }
+}
+
+#[test]
+fn indices_beyond_the_vertices_are_named_and_left_out() {
+    for normals in ["", r#","NORMAL":0"#] {
+        let text = String::from_utf8(shared(1, 30, "SCALAR", 5125)).unwrap();
+        // Positions, and normals where there are any, of 27 of the 30 vertices.
+        let text = text.replace(r#""componentType":5126,"count":30"#, r#""componentType":5126,"count":27"#);
+        let text = text.replace(r#""POSITION":0"#, &format!(r#""POSITION":0{normals}"#));
+        let model = Model::decode(text.as_bytes(), ModelFormat::Gltf, None).unwrap();
+        assert!(model.warnings.iter().any(|w| w.starts_with("3 indices")), "{:?}", model.warnings);
+        let mesh = &model.scene.meshes[0];
+        // The last of ten triangles: left out, or without an area.
+        assert_eq!(mesh.indices.len(), 30);
+        let corner = |i: u32| mesh.vertices.get(i as usize).map(|v| v.position);
+        let places: Vec<_> = mesh.indices[27..].iter().map(|i| corner(*i)).collect();
+        assert!(places.iter().all(|place| *place == places[0]), "{places:?}");
+    }
+}
+
+#[test]
+fn pictures_named_often_are_decoded_once() {
+    let model = gltf(|text| {
+        let texture = format!("[{}]", vec![r#"{"source":0}"#; 500].join(","));
+        let material = (0..500)
+            .map(|i| format!(r#"{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":{i}}}}}}}"#))
+            .collect::<Vec<_>>()
+            .join(",");
+        let png = rastrum::Pixmap::new(1024, 1024).unwrap().encode_png().unwrap();
+        text.replace(r#"[{"source":0}]"#, &texture)
+            .replace(r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#, &material)
+            .replace("gone.png", &format!("data:image/png;base64,{}", base64(&png)))
+    })
+    .unwrap();
+    let textures: Vec<_> = model.scene.materials.iter().filter_map(|m| m.texture.as_ref()).collect();
+    assert_eq!((model.warnings, textures.len()), (vec![], 500));
+    assert!(textures.iter().all(|texture| std::sync::Arc::ptr_eq(texture, textures[0])));
+}
+
 #[test]
 #[cfg(all(feature = "cli", target_os = "linux"))]
 fn memory_is_bounded_by_the_files_size() {
@@ -221,6 +302,7 @@ fn memory_is_bounded_by_the_files_size() {
         ("claims.ply", ply(4_000_000_000, 200).into_bytes()),
         ("claims.gltf", triangle(count)),
         ("fan.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf {}\n", "1 2 3 ".repeat(2_000)).into_bytes()),
+        ("shared.gltf", shared(3_000, 30_000, "SCALAR", 5125)),
         ("huge.gltf", triangle(|text| text.replace(r#""byteLength":60"#, r#""byteLength":6000000000"#))),
     ];
     for (name, bytes) in hostile {

@@ -286,11 +286,15 @@ fn background(text: &str) -> Result<Color, String> {
 
 pub(crate) fn run(arguments: &MeshArguments) -> Result<Outcome, Failure> {
     let started = Instant::now();
-    let (mut scene, warnings, text) = load(arguments)?;
+    let (mut scene, mut warnings, text) = load(arguments)?;
     let parsed = started.elapsed();
-    for warning in &warnings {
-        report::complain(&Failure::new(format!("warning: {warning}")).to_string());
+    let mut bounds = scene.bounds();
+    if bounds.is_empty() {
+        warnings.push("the models hold nothing to draw".to_owned());
+        bounds = Aabb { min: [0.0; 3], max: [0.0; 3] };
     }
+    let complain = |warning: &String| report::complain(&Failure::new(format!("warning: {warning}")).to_string());
+    warnings.iter().for_each(complain);
     if arguments.info {
         report::print(text.as_bytes())?;
     }
@@ -301,7 +305,6 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<Outcome, Failure> {
         (None, _) => return Err(Failure::new("several models make one picture; name it with -o FILE")),
     };
     let output = &output;
-    let bounds = scene.bounds();
     prepare(&mut scene, arguments, &bounds);
     if let Some(filter) = arguments.filter {
         filter_textures(&mut scene, filter)?;
@@ -321,6 +324,11 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<Outcome, Failure> {
         let drawn = render_picture(&scene, &camera, width, height, &settings);
         let (picture, counted) = drawn.map_err(|error| Failure::new(error.to_string()))?;
         stats = counted;
+        let invalid = stats.counters.invalid;
+        if frame == 0 && invalid > 0 {
+            warnings.push(format!("{invalid} primitives have corners that are not there or not numbers; left out"));
+            warnings.last().into_iter().for_each(complain);
+        }
         drawing += start.elapsed().as_secs_f64() * 1e3;
         let start = Instant::now();
         let path = if arguments.turntable.is_some() { numbered(output, frame) } else { output.clone() };
@@ -367,14 +375,13 @@ fn load(arguments: &MeshArguments) -> Result<(Scene, Vec<String>, String), Failu
         let textures = scene.materials.iter().filter(|material| material.texture.is_some()).count();
         text.push_str(&format!(
             "{}: {} nodes, {} meshes, {vertices} vertices, {triangles} triangles, {} materials, {textures} with textures, \
-             {} cameras, box {:?} to {:?}\n",
+             {} cameras, {}\n",
             path.display(),
             scene.nodes.len(),
             scene.meshes.len(),
             scene.materials.len(),
             scene.cameras.len(),
-            bounds.min,
-            bounds.max,
+            if bounds.is_empty() { "no box".to_owned() } else { format!("box {:?} to {:?}", bounds.min, bounds.max) },
         ));
         warnings.extend(model.warnings.into_iter().map(|warning| format!("{}: {warning}", path.display())));
         append(&mut whole, scene);
@@ -548,6 +555,13 @@ fn camera_for(arguments: &MeshArguments, scene: &Scene, bounds: &Aabb, turn: f32
     let aspect = arguments.size.0 as f32 / arguments.size.1 as f32;
     let fov = arguments.fov.unwrap_or(45.0).to_radians();
     let at = arguments.at.map_or(center, |at| at.0);
+    let planes = arguments.near.is_some() && arguments.far.is_some();
+    let given = (arguments.eye.is_some() && planes) || (arguments.camera.is_some() && !arguments.ortho);
+    if radius > LARGEST && !given {
+        return Err(Failure::new(format!(
+            "the scene reaches {radius:e} from its middle, and a camera is found for no more than {LARGEST:e}: give --eye, --at, --near and --far, or scale the model"
+        )));
+    }
     let mut camera = if let Some(number) = arguments.camera {
         let count = scene.cameras.len();
         let found = scene.cameras.get(number).map(|(_, camera)| *camera);
@@ -558,7 +572,7 @@ fn camera_for(arguments: &MeshArguments, scene: &Scene, bounds: &Aabb, turn: f32
         }
         camera
     } else {
-        let eye = arguments.eye.map_or_else(|| framed(arguments, up, at, radius, fov, aspect), |eye| eye.0);
+        let eye = arguments.eye.map_or_else(|| framed(arguments, up, at, bounds, fov, aspect), |eye| eye.0);
         Camera { projection: Projection::Perspective(fov), ..Camera::look_at(eye, at, up) }
     };
     if turn != 0.0 {
@@ -575,12 +589,18 @@ fn camera_for(arguments: &MeshArguments, scene: &Scene, bounds: &Aabb, turn: f32
         let scale = camera::perspective(fov, 1.0, 0.1, 1.0).to_cols_array_2d()[1][1];
         camera.projection = Projection::Orthographic((2.0 * distance / scale).max(1e-6));
     }
-    // Planes around the scene's ball, unless they were given.
+    // Planes around the scene's box, and the lines', unless they were given.
     if arguments.camera.is_none() || arguments.ortho {
-        let [x, y, z] = center;
-        let distance = -camera::transform(&camera.view, [x, y, z, 1.0])[2];
-        camera.far = (distance + radius * 2.5).max(radius * 0.01);
-        camera.near = (distance - radius * 2.5).max(camera.far * 1e-3);
+        let away = |[x, y, z]: [f32; 3]| -camera::transform(&camera.view, [x, y, z, 1.0])[2];
+        let depths = bounds.corners().map(away);
+        let mut nearest = depths.iter().fold(f32::INFINITY, |nearest, depth| nearest.min(*depth)) - radius * 0.01;
+        let mut farthest = depths.iter().fold(f32::NEG_INFINITY, |far, depth| far.max(*depth)) + radius * 0.01;
+        if arguments.grid || arguments.axes {
+            (nearest, farthest) = (nearest.min(away(center) - radius * 3.0), farthest.max(away(center) + radius * 3.0));
+        }
+        camera.far = farthest.max(radius * 0.01);
+        // Parallel projection sees what is behind the camera, too.
+        camera.near = if arguments.ortho { nearest } else { nearest.max(camera.far * 1e-3) };
     }
     camera.near = arguments.near.unwrap_or(camera.near);
     camera.far = arguments.far.unwrap_or(camera.far);
@@ -590,8 +610,14 @@ fn camera_for(arguments: &MeshArguments, scene: &Scene, bounds: &Aabb, turn: f32
     Ok(camera)
 }
 
-/// Where the camera stands so that the scene's ball just fits the narrower of the two angles of view.
-fn framed(arguments: &MeshArguments, up: [f32; 3], at: [f32; 3], radius: f32, fov: f32, aspect: f32) -> [f32; 3] {
+/// Room between the scene and the picture's border.
+const MARGIN: f32 = 1.05;
+
+/// How far a scene may reach from its middle, so that squares and products of distances are numbers.
+const LARGEST: f32 = 1e15;
+
+/// Where the camera stands so that the scene's box just fits the picture; on turntables, whatever the turn.
+fn framed(arguments: &MeshArguments, up: [f32; 3], at: [f32; 3], bounds: &Aabb, fov: f32, aspect: f32) -> [f32; 3] {
     let (azimuth, elevation) = match arguments.view {
         View::Front => (0.0, 0.0),
         View::Right => (90.0, 0.0),
@@ -623,10 +649,23 @@ fn framed(arguments: &MeshArguments, up: [f32; 3], at: [f32; 3], radius: f32, fo
     );
     let [x, y, z, _] = camera::transform(&turn, [front[0], front[1], front[2], 0.0]);
     let scale = camera::perspective(fov, 1.0, 0.1, 1.0).to_cols_array_2d()[1][1];
-    let tangent = (1.0 / scale) * aspect.min(1.0);
-    // sin of the half angle from its tangent.
-    let sine = tangent / (1.0 + tangent * tangent).sqrt();
-    let distance = radius / sine * 1.02;
+    let (vertical, horizontal) = (1.0 / scale, aspect / scale);
+    let distance = if arguments.turntable.is_some() {
+        // The ball around the box: its radius is the distance times the sine of the half angle.
+        let tangent = vertical.min(horizontal);
+        let from_middle = [0, 1, 2].map(|i| at[i] - bounds.center()[i]);
+        let off = from_middle.iter().map(|v| v * v).sum::<f32>().sqrt();
+        (bounds.radius() + off) / (tangent / (1.0 + tangent * tangent).sqrt())
+    } else {
+        // Each corner asks for a distance at which it is on the picture's border.
+        let view = camera::look_at([at[0] + x, at[1] + y, at[2] + z], at, up);
+        let corners = bounds.corners().map(|[x, y, z]| camera::transform(&view, [x, y, z, 1.0]));
+        corners.iter().fold(0.0, |distance: f32, [x, y, z, _]| {
+            let towards = if arguments.ortho { 0.0 } else { z + 1.0 };
+            distance.max(towards + x.abs() / horizontal).max(towards + y.abs() / vertical)
+        })
+    };
+    let distance = (distance * MARGIN).max(1e-6);
     [at[0] + x * distance, at[1] + y * distance, at[2] + z * distance]
 }
 
