@@ -213,9 +213,13 @@ impl EdgeBins {
                 // Level edges inside of a row matter to exact coverage, those between rows to nothing.
                 let matters = edge.y0 != edge.y1 || edge.y0 & (fixed::ONE - 1) != 0;
                 if matters && u32::try_from(points.len() + 2).is_ok() {
-                    let start = points.len();
-                    points.push(FixedPoint { x: edge.x0, y: edge.y0 });
-                    points.push(FixedPoint { x: edge.x1, y: edge.y1 });
+                    let (from, to) = (FixedPoint { x: edge.x0, y: edge.y0 }, FixedPoint { x: edge.x1, y: edge.y1 });
+                    // Most edges go on where the last one ended.
+                    if points.last() != Some(&from) {
+                        points.push(from);
+                    }
+                    let start = points.len() - 1;
+                    points.push(to);
                     list_by_band(bands, points, start, first_top, *band_shift);
                 }
             },
