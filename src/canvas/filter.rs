@@ -68,7 +68,7 @@ const MAX_SIDE: i32 = 32_767;
 
 /// Pictures of effects are made before anything is drawn. When so many bytes of them have come together, what
 /// was recorded is drawn, so that they need not be kept.
-const MAX_PICTURES: u64 = 64 << 20;
+const MAX_PICTURES: u64 = 16 << 20;
 
 impl Canvas<'_> {
     /// Starts a layer with options, as [`push_layer`](Self::push_layer) does; [`pop_layer`](Self::pop_layer) ends it.

@@ -48,8 +48,15 @@ impl Canvas<'_> {
                 return Err(error);
             }
         };
+        // Each draw has a paint of its own, later ones after earlier ones: those of what was replaced are not needed any more, pictures
+        // of earlier folds among them.
+        let last_outer = self.list.commands.iter().rev().find_map(|command| match command {
+            Command::Draw(draw) => Some(draw.paint),
+            _ => None,
+        });
+        let index = last_outer.map_or(0, |last| last + 1);
+        self.list.paints.truncate(index as usize);
         self.list.commands.extend(inner_clips);
-        let index = self.list.paints.len() as u32;
         self.list.paints.push(paint);
         self.list.commands.push(Command::Draw(Draw {
             geometry: Geometry::Bounds,

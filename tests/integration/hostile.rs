@@ -325,6 +325,55 @@ fn time_and_memory_have_limits() {
     }
 }
 
+/// Runs the program with `mebibytes` of addresses for each of its processes, and expects a picture and not a word.
+#[cfg(target_os = "linux")]
+fn assert_drawn_within(name: &str, mebibytes: u32, content: &str) {
+    let folder = Folder::new();
+    let text = svg(content).replace("width='64' height='64'", "width='2000' height='2000'");
+    fs::write(folder.0.join("a.svg"), text).unwrap();
+    let script = format!("ulimit -v {} && exec \"$0\" render a.svg --threads 1", mebibytes << 10);
+    let mut command = Command::new("sh");
+    command.current_dir(&folder.0).args(["-c", &script, env!("CARGO_BIN_EXE_rastrum")]).stdin(Stdio::null());
+    let output = command.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.is_empty(), "{name} in {mebibytes} MiB: {said}");
+    assert_eq!(folder.picture().unwrap().width(), 2000, "{name}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn layers_take_their_pixels_and_64_mib() {
+    const SHAPE: &str = "<path d='M0 0h2000v2000z' fill='red'/>";
+    let filtered = |filter: &str, count: usize| {
+        let region = "x='-1' y='-1' width='3' height='3'";
+        let groups = format!("<g filter='url(#f)'>{SHAPE}</g>").repeat(count);
+        format!("<filter id='f' {region}>{filter}</filter>{groups}")
+    };
+    let blur = "<feGaussianBlur stdDeviation='200'/>";
+    let masked = format!("<mask id='m'>{SHAPE}</mask><g mask='url(#m)'>{SHAPE}</g>");
+    let clipped = format!("<clipPath id='m'>{SHAPE}</clipPath><g clip-path='url(#m)'>{SHAPE}</g>");
+    // How many pictures of all of the canvas, which is one, are there at a time: groups and masks are drawn in bands and need none.
+    let cases = [
+        ("group", 1, format!("<g opacity='.5'>{SHAPE}</g>")),
+        ("a hundred groups", 1, format!("{}{SHAPE}{}", "<g opacity='.9'>".repeat(100), "</g>".repeat(100))),
+        ("blend mode", 1, format!("<g style='mix-blend-mode:hue'>{SHAPE}</g>")),
+        ("mask", 1, masked),
+        ("clip", 1, clipped),
+        ("blur", 2, filtered(blur, 1)),
+        ("shadow", 2, filtered("<feDropShadow dx='9' stdDeviation='20'/>", 1)),
+        ("turbulence", 2, filtered("<feTurbulence baseFrequency='.01'/>", 1)),
+        ("morphology", 2, filtered("<feMorphology radius='20'/>", 1)),
+        ("three blurs", 4, filtered(blur, 3)),
+        // What was recorded is drawn when pictures that wait take 16 MiB: one or two of these. Within a group one more, of the group so far.
+        ("forty blurs", 4, filtered(blur, 40)),
+        ("forty blurs in a group", 6, format!("<g opacity='.5'>{}</g>", filtered(blur, 40))),
+    ];
+    for (name, pictures, content) in cases {
+        // The program, its libraries, the encoder and stacks take some 90 MiB of addresses, and less than 40 MiB of memory.
+        assert_drawn_within(name, 64 + 90 + 4 * 2000 * 2000 * pictures / (1 << 20), &content);
+    }
+}
+
 #[test]
 fn after_a_file_that_ends_its_worker_the_next_is_drawn() {
     let folder = Folder::new();
