@@ -460,7 +460,7 @@ fn s087_depths_and_varyings_of_clipped_triangles_lie_on_their_planes() {
         let along = 50.0 * within(1.0).abs() + 1.0;
         let scene: [[f64; 3]; 3] = match round % 3 {
             0 => {
-                let (y, width) = (-0.05 - within(1.0).abs(), 10_f64.powf(within(2.0) - 1.0));
+                let (y, width) = (-0.05 - within(1.0).abs(), [0.001, 0.01, 0.1, 1.0, 10.0][round / 3 % 5]);
                 let x = within(1.0);
                 [[x - width, y, along], [x + width, y, along], [x, y + within(0.02), -90.0]]
             }
