@@ -33,6 +33,28 @@ pub(crate) enum Command {
     Man(ManArguments),
 }
 
+/// [`Arguments`] for `rastrum render` alone: to describe all commands takes as long as to draw an icon, and drawings come one by one.
+#[derive(Parser)]
+#[command(name = "rastrum", version)]
+struct RenderAlone {
+    #[command(subcommand)]
+    command: RenderCommand,
+}
+
+#[derive(Subcommand)]
+enum RenderCommand {
+    Render(Box<RenderArguments>),
+}
+
+/// What the command line asks for; help and errors of usage end the program.
+pub(crate) fn parse() -> Command {
+    if std::env::args_os().nth(1).is_some_and(|command| command == "render") {
+        let RenderCommand::Render(arguments) = RenderAlone::parse().command;
+        return Command::Render(arguments);
+    }
+    Arguments::parse().command
+}
+
 const RENDER_EXAMPLES: &str = "\
 Examples:
   rastrum render icon.svg                        writes icon.png beside icon.svg

@@ -25,13 +25,11 @@ mod worker;
 
 use std::process::ExitCode;
 
-use clap::Parser as _;
-
-use args::{Arguments, Command};
+use args::Command;
 use report::{Failure, Outcome};
 
 fn main() -> ExitCode {
-    match run(Arguments::parse()) {
+    match run(args::parse()) {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::SomeFailed) => ExitCode::from(1),
         Err(failure) => {
@@ -41,8 +39,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: Arguments) -> Result<Outcome, Failure> {
-    match arguments.command {
+fn run(command: Command) -> Result<Outcome, Failure> {
+    match command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Mesh(arguments) => mesh::run(&arguments),
         Command::Gallery(arguments) => gallery::run(&arguments),
