@@ -2,7 +2,7 @@
 
 use super::image::{Image, Work, grown};
 use crate::color::{demultiply_u8, unit};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geom::IntRect;
 use crate::num::level::dispatch;
 
@@ -42,7 +42,8 @@ pub struct ConvolveMatrix {
     pub preserve_alpha: bool,
 }
 
-/// The most products that one convolution forms: a few seconds' worth. Beyond it the result is transparent.
+/// The most products that one convolution forms: a few seconds' worth. Beyond it there is an error, and the filter
+/// is left out.
 const MOST_PRODUCTS: u64 = 1 << 34;
 
 impl ConvolveMatrix {
@@ -78,9 +79,15 @@ pub(super) fn convolve(
     matrix: &ConvolveMatrix,
     work: Work,
 ) -> Result<Image> {
-    let pixels = u64::from(area.width()) * u64::from(area.height());
-    if !matrix.is_valid() || pixels.saturating_mul(matrix.weights.len() as u64) > MOST_PRODUCTS {
+    if !matrix.is_valid() {
         return Ok(Image::empty());
+    }
+    let pixels = u64::from(area.width()) * u64::from(area.height());
+    if pixels.saturating_mul(matrix.weights.len() as u64) > MOST_PRODUCTS {
+        return Err(Error::Limit(format!(
+            "{pixels} pixels times {} weights of a convolution are more than the limit of {MOST_PRODUCTS}",
+            matrix.weights.len()
+        )));
     }
     let (before, after) = matrix.reach();
     // All that windows reach, made up where it is beyond the region.

@@ -243,6 +243,20 @@ fn a_path_of_300_000_segments_is_drawn() {
 }
 
 #[test]
+fn a_convolution_of_too_many_products_is_left_out_and_named() {
+    let folder = Folder::new();
+    let filter =
+        format!("<filter id='f'><feConvolveMatrix order='300' kernelMatrix='{}'/></filter>", "1 ".repeat(90_000));
+    let shapes = "<rect width='900' height='900' filter='url(#f)'/><rect x='950' width='9' height='9' fill='red'/>";
+    let text = svg(&format!("{filter}{shapes}")).replace("width='64' height='64'", "width='1000' height='1000'");
+    let output = folder.run(&text, &[]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("a convolution") && said.lines().count() == 1, "{said}");
+    let picture = folder.picture().unwrap();
+    assert_eq!((picture.pixel(955, 5), picture.pixel(450, 450)), (Some([255, 0, 0, 255]), Some([0; 4])));
+}
+
+#[test]
 fn links_lead_to_files_around_the_drawing_only() {
     let folder = Folder::new();
     let picture = |name: &str, color| {
