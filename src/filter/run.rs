@@ -1,5 +1,6 @@
 //! A filter at work: which pixels each primitive has to give, then the pixels.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use super::blur::{Blur, blur};
@@ -136,6 +137,11 @@ impl PlacedFilter {
         }
     }
 
+    /// Where an input of primitive `index` is among the source graphic, which is the first, and the primitives' results.
+    fn place_of(&self, input: Input, index: usize) -> usize {
+        self.result_of(input, index).map_or(0, |result| result + 1)
+    }
+
     fn find_wanted(&mut self, visible: IntRect) {
         let filter = Arc::clone(&self.filter);
         if let (Some(last), Some(primitive)) = (self.steps.last_mut(), filter.primitives.last()) {
@@ -232,13 +238,13 @@ impl PlacedFilter {
 
     /// What the filter makes of the source graphic; in sRGB.
     pub(crate) fn run(&self, source: Image, work: Work) -> Result<Image> {
-        let source = Arc::new(source);
-        let mut results: Vec<Option<(Arc<Image>, ColorSpace)>> = Vec::new();
-        // The last primitive that reads each result: after it the picture is dropped.
-        let mut last_use = vec![0; self.steps.len()];
+        // The source graphic, then the results of the primitives so far.
+        let pictures = RefCell::new(vec![Some((Arc::new(source), ColorSpace::Srgb))]);
+        // The last primitive that reads each of them: it may change it, and after it the picture is dropped.
+        let mut last_use = vec![0; self.steps.len() + 1];
         for (index, primitive) in self.filter.primitives.iter().enumerate() {
             for input in primitive.kind.inputs() {
-                if let Some(last) = self.result_of(input, index).and_then(|result| last_use.get_mut(result)) {
+                if let Some(last) = last_use.get_mut(self.place_of(input, index)) {
                     *last = index;
                 }
             }
@@ -248,18 +254,29 @@ impl PlacedFilter {
             let result = if step.wanted.is_empty() {
                 None
             } else {
-                let inputs = Inputs { placed: self, source: &source, results: &results, index, work };
+                // What is read for the last time, and once.
+                let handed_over = |place: usize| {
+                    let reads =
+                        primitive.kind.inputs().into_iter().filter(|i| self.place_of(*i, index) == place).count();
+                    reads == 1 && last_use.get(place) == Some(&index)
+                };
+                let inputs = Inputs { placed: self, pictures: &pictures, handed_over: &handed_over, index, work };
                 let (image, space) = inputs.step(primitive, step)?;
                 Some((Arc::new(image), space))
             };
-            for (result, last) in results.iter_mut().zip(&last_use) {
+            let mut pictures = pictures.borrow_mut();
+            for (picture, last) in pictures.iter_mut().zip(&last_use) {
                 if *last == index {
-                    *result = None;
+                    *picture = None;
                 }
             }
-            results.push(result);
+            pictures.push(result);
         }
-        let Some((image, space)) = results.pop().flatten() else { return Ok(Image::empty()) };
+        let mut pictures = pictures.into_inner();
+        if pictures.len() == 1 {
+            return Ok(Image::empty());
+        }
+        let Some((image, space)) = pictures.pop().flatten() else { return Ok(Image::empty()) };
         let mut image = Arc::unwrap_or_clone(image);
         convert(&mut image, space, ColorSpace::Srgb, work);
         Ok(image)
@@ -269,32 +286,34 @@ impl PlacedFilter {
 /// What a primitive finds when its turn comes.
 struct Inputs<'a> {
     placed: &'a PlacedFilter,
-    source: &'a Arc<Image>,
-    results: &'a [Option<(Arc<Image>, ColorSpace)>],
+    pictures: &'a RefCell<Vec<Option<(Arc<Image>, ColorSpace)>>>,
+    /// Whether a picture is given away where it is read.
+    handed_over: &'a dyn Fn(usize) -> bool,
     index: usize,
     work: Work,
 }
 
 impl Inputs<'_> {
-    /// An input as it is, and its space.
+    /// An input as it is, and its space. A step asks for each of its inputs once.
     fn raw(&self, input: Input) -> (Arc<Image>, ColorSpace) {
-        match self.placed.result_of(input, self.index) {
-            Some(result) => self
-                .results
-                .get(result)
-                .and_then(Clone::clone)
-                .unwrap_or_else(|| (Arc::new(Image::empty()), ColorSpace::Srgb)),
-            None if input == Input::SourceAlpha => {
-                let mut image = Image::clone(self.source);
-                image.for_pixels(self.work, |pixels| {
-                    for pixel in pixels {
-                        *pixel = [0, 0, 0, pixel[3]];
-                    }
-                });
-                (Arc::new(image), ColorSpace::Srgb)
-            }
-            None => (Arc::clone(self.source), ColorSpace::Srgb),
+        let place = self.placed.place_of(input, self.index);
+        let mut pictures = self.pictures.borrow_mut();
+        let picture = match pictures.get_mut(place) {
+            Some(picture) if (self.handed_over)(place) => picture.take(),
+            Some(picture) => picture.clone(),
+            None => None,
+        };
+        let (image, space) = picture.unwrap_or_else(|| (Arc::new(Image::empty()), ColorSpace::Srgb));
+        if input != Input::SourceAlpha {
+            return (image, space);
         }
+        let mut image = Arc::unwrap_or_clone(image);
+        image.for_pixels(self.work, |pixels| {
+            for pixel in pixels {
+                *pixel = [0, 0, 0, pixel[3]];
+            }
+        });
+        (Arc::new(image), space)
     }
 
     /// An input in the given space, shared where possible.
