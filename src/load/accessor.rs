@@ -1,5 +1,7 @@
 //! glTF accessors: numbers in buffers, every place checked.
 
+use std::sync::Arc;
+
 use gltf::accessor::{Accessor, DataType, sparse::IndexType};
 
 use crate::error::{Error, Result};
@@ -27,7 +29,12 @@ fn number(kind: DataType, bytes: &[u8], normalized: bool) -> Option<f64> {
 }
 
 /// The bytes of `length` at `offset` of a view.
-fn slice<'a>(buffers: &'a [Vec<u8>], view: &gltf::buffer::View<'_>, offset: usize, length: usize) -> Result<&'a [u8]> {
+fn slice<'a>(
+    buffers: &'a [Arc<Vec<u8>>],
+    view: &gltf::buffer::View<'_>,
+    offset: usize,
+    length: usize,
+) -> Result<&'a [u8]> {
     let fault = || Error::Format(format!("buffer view {} does not hold what refers to it", view.index()));
     let buffer = buffers.get(view.buffer().index()).ok_or_else(fault)?;
     let end = offset.checked_add(length).filter(|end| *end <= view.length()).ok_or_else(fault)?;
@@ -50,7 +57,7 @@ pub(super) struct Values<'a> {
 
 impl<'a> Values<'a> {
     /// Checks that all of an accessor lies in its buffers.
-    pub(super) fn new(accessor: &Accessor<'_>, buffers: &'a [Vec<u8>]) -> Result<Self> {
+    pub(super) fn new(accessor: &Accessor<'_>, buffers: &'a [Arc<Vec<u8>>]) -> Result<Self> {
         let kind = accessor.data_type();
         let (component, components) = (size_of(kind), accessor.dimensions().multiplicity());
         let (count, element) = (accessor.count(), component * components);
@@ -66,7 +73,7 @@ impl<'a> Values<'a> {
             }
             None => {
                 // Zeros, as the specification says; no more than the file could have held.
-                if count > buffers.iter().map(Vec::len).sum() {
+                if count > buffers.iter().map(|buffer| buffer.len()).sum() {
                     return Err(broken("its count is beyond the buffers"));
                 }
                 None
@@ -98,7 +105,7 @@ impl<'a> Values<'a> {
     }
 
     /// Indices: one whole number each.
-    pub(super) fn of_indices(accessor: &Accessor<'_>, buffers: &'a [Vec<u8>]) -> Result<Self> {
+    pub(super) fn of_indices(accessor: &Accessor<'_>, buffers: &'a [Arc<Vec<u8>>]) -> Result<Self> {
         let values = Self::new(accessor, buffers)?;
         if values.components != 1 || !matches!(values.kind, DataType::U8 | DataType::U16 | DataType::U32) {
             return Err(Error::Format(format!("accessor {}: indices must be unsigned integers", accessor.index())));

@@ -1,5 +1,6 @@
 //! glTF 2.0 and GLB, through the `gltf` crate; accessors are read here.
 
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -7,13 +8,20 @@ use gltf::mesh::{Mode, Semantic};
 use gltf::texture::WrappingMode;
 
 use super::accessor::Values;
+use super::budget::Budget;
+use super::textures::{Place, Textures};
 use super::{Model, base64, referenced};
 use crate::error::{Error, Result};
 use crate::scene::{AlphaMode, Camera, Material, Mesh, MeshVertex, Node, Projection, Scene, Shading};
 use crate::space::{Address, Filter, Sampler, Texture, Topology, camera};
-use crate::surface::Pixmap;
+
+/// Bytes that an object of the JSON takes at most, as the crate keeps it and in the scene: a node.
+const OBJECT: usize = 400;
 
 pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
+    let mut budget = Budget::new(bytes.len());
+    let objects = bytes.iter().filter(|byte| **byte == b'{').count();
+    budget.take_each(objects, OBJECT, "the objects of its JSON")?;
     let unsound = |error: gltf::Error| Error::Format(format!("not sound glTF: {error}"));
     // The crate's validation looks up the accessors of positions before it has looked whether they are there.
     let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(unsound)?;
@@ -23,17 +31,12 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
     if let Some(missing) = used.find(|index| index.value() >= accessors) {
         return Err(Error::Format(format!("not sound glTF: there is no accessor {}", missing.value())));
     }
-    let file = gltf::Gltf::from_slice(bytes).map_err(unsound)?;
+    drop(unchecked);
+    let mut file = gltf::Gltf::from_slice(bytes).map_err(unsound)?;
     let mut warnings = Vec::new();
-    let buffers = buffers(&file, folder)?;
-    let size = bytes.len().saturating_add(buffers.iter().map(Vec::len).sum());
-    let mut budget = Budget::new(size);
+    let buffers = buffers(&mut file, folder, &mut budget)?;
     let mut scene = Scene::new();
-    let textures = textures(&file, &buffers, folder, &mut warnings);
-    for material in file.materials() {
-        scene.add_material(material_of(&material, &textures));
-    }
-    let fallback = scene.add_material(Material { shading: Shading::Pbr, color: [1.0; 4], ..Material::default() });
+    let fallback = file.materials().len();
     // The meshes of each glTF mesh, one for each of its primitives.
     let mut parts = Vec::new();
     for mesh in file.meshes() {
@@ -47,6 +50,12 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
         }
         parts.push(numbers);
     }
+    // After the meshes: textures can do with what is left.
+    let textures = textures(&file, &buffers, folder, &mut budget, &mut warnings);
+    for material in file.materials() {
+        scene.add_material(material_of(&material, &textures));
+    }
+    scene.add_material(Material { shading: Shading::Pbr, color: [1.0; 4], ..Material::default() });
     for node in file.nodes() {
         let meshes = node.mesh().and_then(|mesh| parts.get(mesh.index())).cloned().unwrap_or_default();
         scene.nodes.push(Node {
@@ -61,16 +70,14 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
     scene.roots = match chosen {
         Some(chosen) => chosen.nodes().map(|node| node.index()).collect(),
         None => {
-            let children: Vec<usize> = scene.nodes.iter().flat_map(|node| node.children.clone()).collect();
+            let children: HashSet<usize> = scene.nodes.iter().flat_map(|node| node.children.clone()).collect();
             (0..scene.nodes.len()).filter(|i| !children.contains(i)).collect()
         }
     };
-    let world = scene.world_transforms();
+    let world: HashMap<usize, glam::Mat4> = scene.world_transforms().into_iter().collect();
     for node in file.nodes() {
-        let (Some(own), Some((_, place))) = (node.camera(), world.iter().find(|(number, _)| *number == node.index()))
-        else {
-            continue;
-        };
+        let Some(own) = node.camera() else { continue };
+        let Some(place) = world.get(&node.index()) else { continue };
         let name = own.name().or(node.name()).unwrap_or("camera").to_owned();
         let (projection, near, far) = match own.projection() {
             gltf::camera::Projection::Perspective(p) => {
@@ -89,27 +96,37 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
     if reached < scene.nodes.len() {
         warnings.push(format!("{} nodes are outside of the scene; left out", scene.nodes.len() - reached));
     }
-    let named: usize =
-        world.iter().filter_map(|(node, _)| scene.nodes.get(*node)).map(|node| node.children.len()).sum();
+    let named: usize = world.keys().filter_map(|node| scene.nodes.get(*node)).map(|node| node.children.len()).sum();
     if named + scene.roots.len() > reached {
         warnings.push("nodes are children of several nodes, or of themselves: they are drawn once".to_owned());
     }
     Ok(Model { scene, warnings })
 }
 
-fn buffers(file: &gltf::Gltf, folder: Option<&Path>) -> Result<Vec<Vec<u8>>> {
+/// The bytes of every buffer. Buffers of the same source share them.
+fn buffers(file: &mut gltf::Gltf, folder: Option<&Path>, budget: &mut Budget) -> Result<Vec<Arc<Vec<u8>>>> {
+    let binary = file.blob.take().map(Arc::new);
+    let mut named: HashMap<&str, Arc<Vec<u8>>> = HashMap::new();
     let mut buffers = Vec::new();
-    for buffer in file.buffers() {
+    for buffer in file.document.buffers() {
         let number = buffer.index();
         let data = match buffer.source() {
             gltf::buffer::Source::Bin => {
-                file.blob.clone().ok_or_else(|| Error::Format("the file has no binary part".to_owned()))?
+                binary.clone().ok_or_else(|| Error::Format("the file has no binary part".to_owned()))?
             }
-            gltf::buffer::Source::Uri(uri) if uri.starts_with("data:") => {
-                base64::data_uri(uri).ok_or_else(|| Error::Format(format!("buffer {number}: broken data URI")))?
-            }
-            gltf::buffer::Source::Uri(uri) => referenced(folder, &base64::unescape(uri))
-                .map_err(|text| Error::Format(format!("buffer {number}: {text}")))?,
+            gltf::buffer::Source::Uri(uri) => match named.get(uri) {
+                Some(data) => Arc::clone(data),
+                None => {
+                    let data = if uri.starts_with("data:") {
+                        base64::data_uri(uri).ok_or_else(|| "broken data URI".to_owned())
+                    } else {
+                        referenced(folder, &base64::unescape(uri)).inspect(|data| budget.add_file(data.len()))
+                    };
+                    let data = Arc::new(data.map_err(|text| Error::Format(format!("buffer {number}: {text}")))?);
+                    named.insert(uri, Arc::clone(&data));
+                    data
+                }
+            },
         };
         if data.len() < buffer.length() {
             return Err(Error::Format(format!(
@@ -125,27 +142,32 @@ fn buffers(file: &gltf::Gltf, folder: Option<&Path>) -> Result<Vec<Vec<u8>>> {
 
 /// Every texture, or `None` where it cannot be had.
 fn textures(
-    file: &gltf::Gltf,
-    buffers: &[Vec<u8>],
+    file: &gltf::Document,
+    buffers: &[Arc<Vec<u8>>],
     folder: Option<&Path>,
+    budget: &mut Budget,
     warnings: &mut Vec<String>,
 ) -> Vec<Option<Arc<Texture>>> {
-    // Files may name one picture a thousand times.
-    let mut done: Vec<(usize, Sampler, Option<Arc<Texture>>)> = Vec::new();
+    let mut textures = Textures::new(folder);
     let mut out = Vec::new();
     for texture in file.textures() {
-        let (image, sampler) = (texture.source().index(), sampler_of(&texture.sampler()));
-        if let Some((_, _, same)) = done.iter().find(|(i, s, _)| (*i, *s) == (image, sampler)) {
-            out.push(same.clone());
-            continue;
-        }
-        let loaded = image_bytes(&texture.source(), buffers, folder).and_then(|(name, bytes)| {
-            picture(&bytes, sampler).map_err(|text| if name.is_empty() { text } else { format!("{name}: {text}") })
-        });
-        let loaded =
-            loaded.map_err(|text| warnings.push(format!("texture {} is left out: {text}", texture.index()))).ok();
-        done.push((image, sampler, loaded.clone()));
-        out.push(loaded);
+        let name = format!("texture {}", texture.index());
+        let place = match texture.source().source() {
+            gltf::image::Source::View { view, .. } => {
+                let range = view.offset()..view.offset().saturating_add(view.length());
+                match buffers.get(view.buffer().index()).and_then(|buffer| buffer.get(range)) {
+                    Some(bytes) => Place::Bytes(bytes),
+                    None => {
+                        warnings.push(format!("{name} is left out: its buffer view is beyond the buffer"));
+                        out.push(None);
+                        continue;
+                    }
+                }
+            }
+            gltf::image::Source::Uri { uri, .. } if uri.starts_with("data:") => Place::Data(uri),
+            gltf::image::Source::Uri { uri, .. } => Place::File(base64::unescape(uri)),
+        };
+        out.push(textures.get(&name, place, sampler_of(&texture.sampler()), budget, warnings));
     }
     out
 }
@@ -163,37 +185,6 @@ fn sampler_of(own: &gltf::texture::Sampler<'_>) -> Sampler {
         _ => Filter::Trilinear,
     };
     Sampler { address: [address(own.wrap_s()), address(own.wrap_t()), Address::Clamp], filter }
-}
-
-/// The file name, empty for one inside of the model, and the bytes of a picture.
-fn image_bytes(
-    image: &gltf::Image<'_>,
-    buffers: &[Vec<u8>],
-    folder: Option<&Path>,
-) -> std::result::Result<(String, Vec<u8>), String> {
-    match image.source() {
-        gltf::image::Source::View { view, .. } => {
-            let range = view.offset()..view.offset().saturating_add(view.length());
-            let data = buffers.get(view.buffer().index()).and_then(|buffer| buffer.get(range));
-            let data = data.map(<[u8]>::to_vec).ok_or_else(|| "its buffer view is beyond the buffer".to_owned())?;
-            Ok((String::new(), data))
-        }
-        gltf::image::Source::Uri { uri, .. } if uri.starts_with("data:") => {
-            let data = base64::data_uri(uri).ok_or_else(|| "broken data URI".to_owned())?;
-            Ok((String::new(), data))
-        }
-        gltf::image::Source::Uri { uri, .. } => {
-            let name = base64::unescape(uri);
-            let data = referenced(folder, &name)?;
-            Ok((name, data))
-        }
-    }
-}
-
-/// A picture's bytes as a texture.
-pub(super) fn picture(bytes: &[u8], sampler: Sampler) -> std::result::Result<Arc<Texture>, String> {
-    let pixmap = Pixmap::decode(bytes).map_err(|error| error.to_string())?;
-    Ok(Arc::new(Texture::from_pixmap(&pixmap, sampler).map_err(|error| error.to_string())?))
 }
 
 fn material_of(material: &gltf::Material<'_>, textures: &[Option<Arc<Texture>>]) -> Material {
@@ -215,34 +206,10 @@ fn material_of(material: &gltf::Material<'_>, textures: &[Option<Arc<Texture>>])
     }
 }
 
-/// What meshes may take: files can name the same data as often as they like.
-struct Budget {
-    left: usize,
-}
-
-impl Budget {
-    /// Bytes that a vertex takes as it is kept and as it is drawn.
-    const VERTEX: usize = 160;
-    /// What small files may take, too.
-    const LEAST: usize = 32 << 20;
-
-    fn new(bytes: usize) -> Self {
-        Self { left: bytes.saturating_mul(64).max(Self::LEAST) }
-    }
-
-    fn take(&mut self, vertices: usize, indices: usize) -> Result<()> {
-        let size = vertices.saturating_mul(Self::VERTEX).saturating_add(indices.saturating_mul(4));
-        self.left = self.left.checked_sub(size).ok_or_else(|| {
-            Error::Limit("its meshes name the same data so often that they take more than 64 times its size".to_owned())
-        })?;
-        Ok(())
-    }
-}
-
 /// A glTF primitive as a mesh of the vertices that it uses; `None` without positions.
 fn mesh_of(
     primitive: &gltf::Primitive<'_>,
-    buffers: &[Vec<u8>],
+    buffers: &[Arc<Vec<u8>>],
     budget: &mut Budget,
     warnings: &mut Vec<String>,
 ) -> Result<Option<Mesh>> {
@@ -273,7 +240,7 @@ fn mesh_of(
             let (all, count) = (positions.len(), values.len());
             // Many primitives may share one accessor, of which each uses a part.
             if count < all {
-                budget.take(count, 2 * count)?;
+                budget.take_mesh(count, 2 * count)?;
                 let indices: Vec<u32> = (0..count).map(read).collect();
                 let mut used = indices.clone();
                 used.sort_unstable();
@@ -287,12 +254,12 @@ fn mesh_of(
                 used.retain(|index| (*index as usize) < all);
                 (used.into_iter().map(|i| vertex(i as usize)).collect(), indices)
             } else {
-                budget.take(all, count)?;
+                budget.take_mesh(all, count)?;
                 ((0..all).map(vertex).collect::<Vec<_>>(), (0..count).map(read).collect())
             }
         }
         None => {
-            budget.take(positions.len(), positions.len())?;
+            budget.take_mesh(positions.len(), positions.len())?;
             ((0..positions.len()).map(vertex).collect(), (0..positions.len() as u32).collect())
         }
     };
@@ -314,7 +281,7 @@ fn mesh_of(
         // The specification asks for flat normals: a vertex for each corner.
         let triangles = mesh.triangles();
         if !triangles.is_empty() {
-            budget.take(3 * triangles.len(), 3 * triangles.len())?;
+            budget.take_mesh(3 * triangles.len(), 3 * triangles.len())?;
             mesh.flat_normals();
         }
     }

@@ -2,10 +2,12 @@
 
 mod accessor;
 mod base64;
+mod budget;
 mod gltf;
 mod obj;
 mod ply;
 mod stl;
+mod textures;
 
 use std::path::Path;
 
@@ -71,6 +73,9 @@ impl Model {
 
     /// Reads a model from bytes. `folder` is where files that it refers to are looked for; without one they count as missing.
     /// Missing textures and materials are warnings; the mesh is drawn without.
+    ///
+    /// A model takes at most 64 times the size of its files, or 64 MiB where that is more, and 128 MiB for a picture while it is
+    /// decoded. Textures beyond that become smaller, with a warning; anything else is an error.
     ///
     /// # Errors
     /// [`Error::Format`] for data that is not what it claims to be, [`Error::Limit`] for what is too large.

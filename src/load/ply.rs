@@ -5,10 +5,14 @@ use std::io::Cursor;
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
 
+use super::budget::Budget;
 use super::{Model, single};
 use crate::error::{Error, Result};
 use crate::scene::{Mesh, MeshVertex};
 use crate::space::Topology;
+
+/// Bytes that an element takes, as the crate keeps it while its list grows, and in the mesh.
+const ELEMENT: usize = 192;
 
 /// Any element: what is known of vertices and faces is kept.
 struct Element {
@@ -80,11 +84,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Model> {
     let parser = Parser::<Element>::new();
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = parser.read_header(&mut reader).map_err(|error| fault(&error))?;
+    let mut budget = Budget::new(bytes.len());
     for (name, element) in &header.elements {
         // Each takes at least one byte of the file, or nothing at all if it has no properties.
         if element.count > bytes.len() {
             return Err(Error::Format(format!("PLY that claims {} of {name} in {} bytes", element.count, bytes.len())));
         }
+        budget.take_each(element.count, ELEMENT, &format!("its elements ({name})"))?;
     }
     let payload = parser.read_payload(&mut reader, &header).map_err(|error| fault(&error))?;
     let mut mesh = Mesh::default();

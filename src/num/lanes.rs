@@ -3,6 +3,17 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8, u16x16};
 
+/// An array of `f` of each index. `array::from_fn` and `array::map` are not always inlined, and vectors in them are then reckoned
+/// without the caller's SIMD level: every operation becomes a call.
+#[inline(always)]
+pub(crate) fn each<S: Simd, const N: usize>(simd: S, f: impl Fn(usize) -> f32x8<S>) -> [f32x8<S>; N] {
+    let mut out = [f32x8::splat(simd, 0.0); N];
+    for (i, out) in out.iter_mut().enumerate() {
+        *out = f(i);
+    }
+    out
+}
+
 /// ⌊v / 255 + ½⌋ for v in 0 ..= 255·255, per lane, exactly.
 #[inline(always)]
 pub(crate) fn div255_u16<S: Simd>(v: u16x16<S>) -> u16x16<S> {

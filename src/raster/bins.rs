@@ -318,17 +318,20 @@ fn extent<S: Simd>(simd: S, points: &[Point]) -> Option<[f32; 4]> {
     Some([smallest(low, 0)?, smallest(low, 1)?, -smallest(high, 0)?, -smallest(high, 1)?])
 }
 
+/// Four points in fixed point. Not a closure: those are not always inlined, and lose the SIMD level then.
+#[inline(always)]
+fn rounded<S: Simd>(simd: S, block: [Point; 4]) -> [FixedPoint; 4] {
+    // A float times a power of two is exact, so that it is rounded once.
+    let v = f32x8::load_array(simd, bytemuck::cast(block)) * fixed::ONE as f32;
+    bytemuck::cast(truncate_f32(v.round_ties_even()).to_array())
+}
+
 /// Appends device points within ±2^22 as fixed point, rounded to nearest, ties to even.
 #[inline(always)]
 fn append_fixed<S: Simd>(simd: S, points: &[Point], out: &mut Vec<FixedPoint>) {
-    let round = |block: [Point; 4]| -> [FixedPoint; 4] {
-        // A float times a power of two is exact, so that it is rounded once.
-        let v = f32x8::load_array(simd, bytemuck::cast(block)) * fixed::ONE as f32;
-        bytemuck::cast(truncate_f32(v.round_ties_even()).to_array())
-    };
     let (blocks, rest) = points.as_chunks::<4>();
     for block in blocks {
-        out.extend_from_slice(&round(*block));
+        out.extend_from_slice(&rounded(simd, *block));
     }
     if !rest.is_empty() {
         let mut last = [Point::ZERO; 4];
@@ -336,7 +339,7 @@ fn append_fixed<S: Simd>(simd: S, points: &[Point], out: &mut Vec<FixedPoint>) {
             *last = *p;
         }
         let end = out.len() + rest.len();
-        out.extend_from_slice(&round(last));
+        out.extend_from_slice(&rounded(simd, last));
         out.truncate(end);
     }
 }

@@ -3,6 +3,7 @@
 use super::model::{Light, LightKind};
 use super::shadow::ShadowMap;
 use super::surface_shader::{Vector, dot, normalized};
+use crate::num::lanes::each;
 use crate::num::trig;
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x8};
@@ -47,17 +48,12 @@ impl PreparedLight {
     #[inline(always)]
     pub(super) fn at<S: Simd>(&self, simd: S, place: &Vector<S>) -> (Vector<S>, f32x8<S>) {
         let one = f32x8::splat(simd, 1.0);
-        let towards = |position: &[f32; 3], inverse_range: f32| {
-            let way: Vector<S> = std::array::from_fn(|i| f32x8::splat(simd, position[i]) - place[i]);
-            let fraction = dot(&way, &way) * (inverse_range * inverse_range);
-            (normalized(way), one / (fraction + 1.0))
-        };
         match &self.kind {
-            Prepared::Directional(direction) => (direction.map(|v| f32x8::splat(simd, v)), one),
-            Prepared::Point { position, inverse_range } => towards(position, *inverse_range),
+            Prepared::Directional(direction) => (each(simd, |i| f32x8::splat(simd, direction[i])), one),
+            Prepared::Point { position, inverse_range } => towards(simd, place, position, *inverse_range),
             Prepared::Spot { position, direction, inverse_range, outer, inverse_width } => {
-                let (way, strength) = towards(position, *inverse_range);
-                let axis = direction.map(|v| f32x8::splat(simd, -v));
+                let (way, strength) = towards(simd, place, position, *inverse_range);
+                let axis: Vector<S> = each(simd, |i| f32x8::splat(simd, -direction[i]));
                 let cone = (dot(&way, &axis) - *outer) * *inverse_width;
                 let zero = f32x8::splat(simd, 0.0);
                 let cone = cone.simd_gt(zero).select(cone, zero);
@@ -75,6 +71,15 @@ impl PreparedLight {
             None => strength,
         }
     }
+}
+
+/// The direction to a position, and what its distance leaves of a light there.
+#[inline(always)]
+fn towards<S: Simd>(simd: S, place: &Vector<S>, position: &[f32; 3], inverse_range: f32) -> (Vector<S>, f32x8<S>) {
+    let one = f32x8::splat(simd, 1.0);
+    let way: Vector<S> = each(simd, |i| f32x8::splat(simd, position[i]) - place[i]);
+    let fraction = dot(&way, &way) * (inverse_range * inverse_range);
+    (normalized(way), one / (fraction + 1.0))
 }
 
 /// The shadow volumes of triangles for a light, as triangles in homogeneous world space: each triangle, the same pushed away from the light to

@@ -14,6 +14,7 @@ use super::model::{Light, LightKind, Mesh, MeshVertex, ShadowSettings, unit};
 use super::render::{Item, SceneSettings};
 use super::surface_shader::{Vector, to_integers};
 use crate::error::{Error, Result};
+use crate::num::lanes::each;
 use crate::space::{
     ClipDepth, ClipPlane, ClipVertex, Compare, Depth, Pipeline, Primitives, Target, Topology, camera, clip_polygon,
     vertex_fn,
@@ -242,8 +243,8 @@ impl ShadowMap {
             }
             View::Cube { position, scale } => {
                 let zero = f32x8::splat(simd, 0.0);
-                let way: Vector<S> = std::array::from_fn(|i| place[i] - position[i]);
-                let length: Vector<S> = way.map(|v| v.simd_lt(zero).select(-v, v));
+                let way: Vector<S> = each(simd, |i| place[i] - position[i]);
+                let length: Vector<S> = each(simd, |i| way[i].simd_lt(zero).select(-way[i], way[i]));
                 let along_x = length[0].simd_ge(length[1]) & length[0].simd_ge(length[2]);
                 let along_y = length[1].simd_ge(length[2]);
                 let pick = |v: &Vector<S>, turn: usize| {

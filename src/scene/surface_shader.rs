@@ -6,7 +6,7 @@ use fearless_simd::{Simd, f32x8, i32x8, u32x8};
 use super::light::PreparedLight;
 use super::model::{AlphaMode, Fog, FogKind, Material, Shading};
 use super::render::Look;
-use crate::num::lanes::{max_f32, min_f32, truncate_f32};
+use crate::num::lanes::{each, max_f32, min_f32, truncate_f32};
 use crate::space::{FragmentShader, Fragments, Shade, unpack};
 
 /// Where the varyings are.
@@ -51,7 +51,7 @@ pub(super) fn normalized<S: Simd>(v: Vector<S>) -> Vector<S> {
     let zero = f32x8::splat(simd, 0.0);
     let inverse = f32x8::splat(simd, 1.0) / length;
     let inverse = length.simd_gt(zero).select(inverse, zero);
-    v.map(|v| v * inverse)
+    each(simd, |i| v[i] * inverse)
 }
 
 /// e^x for x ≤ 0, within 2·10⁻⁷: 2 to the whole part by the exponent's bits, the rest by its series.
@@ -107,7 +107,7 @@ impl SurfaceShader<'_> {
     /// Base colour (straight) and alpha.
     #[inline(always)]
     fn base<S: Simd>(&self, f: &Fragments<'_, S>) -> [f32x8<S>; 4] {
-        let mut base: [f32x8<S>; 4] = std::array::from_fn(|i| f.varying(COLOR + i) * self.material.color[i]);
+        let mut base: [f32x8<S>; 4] = each(f.simd(), |i| f.varying(COLOR + i) * self.material.color[i]);
         if let Some(texture) = self.material.texture.as_ref().filter(|_| self.use_texture) {
             let [u, v] = f.varyings(UV);
             let texel = unpack(texture.sample_grad(u, v, f.derivatives(UV), f.derivatives(UV + 1)));
@@ -134,15 +134,15 @@ impl SurfaceShader<'_> {
         if n[0] * to_eye[0] + n[1] * to_eye[1] + n[2] * to_eye[2] < 0.0 {
             n = n.map(|v| -v);
         }
-        normalized(n.map(|v| f32x8::splat(f.simd(), v)))
+        normalized(each(f.simd(), |i| f32x8::splat(f.simd(), n[i])))
     }
 
     /// The direction from places to the viewer.
     #[inline(always)]
     fn to_viewer<S: Simd>(&self, simd: S, position: &Vector<S>) -> Vector<S> {
         match self.view {
-            Some(view) => view.map(|v| f32x8::splat(simd, v)),
-            None => normalized(std::array::from_fn(|i| f32x8::splat(simd, self.eye[i]) - position[i])),
+            Some(view) => each(simd, |i| f32x8::splat(simd, view[i])),
+            None => normalized(each(simd, |i| f32x8::splat(simd, self.eye[i]) - position[i])),
         }
     }
 
@@ -164,7 +164,7 @@ impl SurfaceShader<'_> {
             let lit = cosine.simd_gt(zero);
             let strength = light.shadowed(position, strength, mask);
             let cosine = lit.select(cosine, zero) * strength;
-            let half = normalized(std::array::from_fn(|i| direction[i] + viewer[i]));
+            let half = normalized(each(simd, |i| direction[i] + viewer[i]));
             let shine = dot(normal, &half);
             let shine = shine.simd_gt(zero).select(shine, zero);
             let shine = power(shine, self.material.shininess.clamp(1, 1024)) * strength * self.material.specular;
@@ -186,20 +186,20 @@ impl SurfaceShader<'_> {
         let nv = dot(normal, &viewer);
         // Seen from behind: the other side's normal.
         let turned = nv.simd_lt(zero);
-        let normal: Vector<S> = std::array::from_fn(|i| turned.select(-normal[i], normal[i]));
+        let normal: Vector<S> = each(simd, |i| turned.select(-normal[i], normal[i]));
         let nv = turned.select(-nv, nv) + 1e-4;
         let metallic = self.material.metallic.clamp(0.0, 1.0);
         let roughness = self.material.roughness.clamp(0.045, 1.0);
         let alpha = roughness * roughness;
         let alpha2 = alpha * alpha;
         let k = alpha * 0.5;
-        let mut out: Vector<S> = std::array::from_fn(|i| base[i] * self.ambient);
+        let mut out: Vector<S> = each(simd, |i| base[i] * self.ambient);
         for light in self.lights {
             let (direction, strength) = light.at(simd, position);
             let nl = dot(&normal, &direction);
             let nl = nl.simd_gt(zero).select(nl, zero);
             let strength = light.shadowed(position, strength, mask) * nl * (1.0 - self.ambient);
-            let half = normalized(std::array::from_fn(|i| direction[i] + viewer[i]));
+            let half = normalized(each(simd, |i| direction[i] + viewer[i]));
             let (nh, vh) = (dot(&normal, &half), dot(&viewer, &half));
             let (nh, vh) = (max_f32(nh, zero), min_f32(max_f32(vh, zero), one));
             let d = nh * nh * (alpha2 - 1.0) + 1.0;
@@ -231,7 +231,7 @@ impl FragmentShader for SurfaceShader<'_> {
             }
             Look::Normals => {
                 let normal = normalized(f.varyings(NORMAL));
-                return Shade::opaque(normal.map(|v| v * 0.5 + 0.5));
+                return Shade::opaque(each(simd, |i| normal[i] * 0.5 + 0.5));
             }
             Look::Depth => {
                 let (near, far) = self.depth_range;
@@ -257,7 +257,7 @@ impl FragmentShader for SurfaceShader<'_> {
             Shading::Gouraud => {
                 let light: Vector<S> = f.varyings(LIGHT);
                 let shine = f.varying(LIGHT + 3);
-                std::array::from_fn(|i| base[i] * light[i] + shine)
+                each(simd, |i| base[i] * light[i] + shine)
             }
             Shading::Pbr => {
                 let (position, normal) = (f.varyings(POSITION), normalized(f.varyings(NORMAL)));
@@ -270,7 +270,7 @@ impl FragmentShader for SurfaceShader<'_> {
                     _ => normalized(f.varyings(NORMAL)),
                 };
                 let (diffuse, highlight) = self.phong(simd, &position, &normal, f.mask());
-                std::array::from_fn(|i| base[i] * (diffuse[i] * (1.0 - ambient) + ambient) + highlight[i])
+                each(simd, |i| base[i] * (diffuse[i] * (1.0 - ambient) + ambient) + highlight[i])
             }
         };
         if let Some(fog) = self.fog {
@@ -279,7 +279,7 @@ impl FragmentShader for SurfaceShader<'_> {
                 rgb[i] = rgb[i] * factor + (one - factor) * fog.color[i];
             }
         }
-        let rgb = rgb.map(|v| min_f32(max_f32(v, f32x8::splat(simd, 0.0)), one));
+        let rgb = each(simd, |i| min_f32(max_f32(rgb[i], f32x8::splat(simd, 0.0)), one));
         let alpha = min_f32(max_f32(base[3], f32x8::splat(simd, 0.0)), one);
         let mut shade = match self.material.alpha {
             AlphaMode::Blend => Shade::color([rgb[0] * alpha, rgb[1] * alpha, rgb[2] * alpha, alpha]),

@@ -7,7 +7,7 @@ use super::batch::BatchTriangle;
 use super::bin::Vertices;
 use super::test::{lane_offsets, plane_at};
 use super::vertex::MAX_VARYINGS;
-use crate::num::lanes::{max_i32, truncate_f32};
+use crate::num::lanes::{each, max_i32, truncate_f32};
 
 /// The program that gives eight pixels their colours.
 ///
@@ -229,7 +229,7 @@ impl<'a, S: Simd> Fragments<'a, S> {
     /// Several varyings from `first` on.
     #[inline(always)]
     pub fn varyings<const N: usize>(&self, first: usize) -> [f32x8<S>; N] {
-        std::array::from_fn(|i| self.varying(first + i))
+        each(self.simd, |i| self.varying(first + i))
     }
 
     /// How a varying grows per pixel to the right and down, exactly (not by differences of neighbours): (∂/∂x, ∂/∂y).
@@ -357,7 +357,7 @@ impl<F: Fn(&Fragment) -> Option<[f32; 4]> + Sync> FragmentShader for PixelFn<F> 
                 }
             }
         }
-        Shade { color: pack(out.map(|values| f32x8::load_array(simd, values))), keep }
+        Shade { color: pack(each(simd, |i| f32x8::load_array_ref(simd, &out[i]))), keep }
     }
 }
 

@@ -113,8 +113,25 @@ impl Texture {
     /// # Errors
     /// As [`Texture::new`].
     pub fn from_pixmap(pixmap: &Pixmap, sampler: Sampler) -> Result<Self> {
-        let texels = pixmap.data().as_chunks::<4>().0.iter().map(|pixel| u32::from_le_bytes(*pixel)).collect();
-        Self::new(pixmap.width(), pixmap.height(), 1, texels, sampler)
+        let Plain { size: [width, height, _], texels } = Plain::of(pixmap);
+        Self::new(width as u32, height as u32, 1, texels, sampler)
+    }
+
+    /// The same for textures that take at most so many bytes: half the picture's size, a quarter and so on, where it is larger.
+    pub(crate) fn within(pixmap: Pixmap, sampler: Sampler, most: usize) -> Result<Self> {
+        let mut plain = Plain::of(&pixmap);
+        // What it was is as large as what it becomes.
+        drop(pixmap);
+        while plain.size != [1; 3] && plain.texture_bytes(sampler) > most {
+            plain = plain.halved();
+        }
+        let [width, height, _] = plain.size;
+        Self::new(width as u32, height as u32, 1, plain.texels, sampler)
+    }
+
+    /// The bytes of its levels.
+    pub(crate) fn bytes(&self) -> usize {
+        self.levels.iter().map(|level| size_of_val(&level.pairs[..])).sum()
     }
 
     /// The same texels with another filter; mipmaps are made or left out as it needs.
@@ -400,6 +417,23 @@ impl Level {
 }
 
 impl Plain {
+    fn of(pixmap: &Pixmap) -> Self {
+        let texels = pixmap.data().as_chunks::<4>().0.iter().map(|pixel| u32::from_le_bytes(*pixel)).collect();
+        Self { size: [pixmap.width() as usize, pixmap.height() as usize, 1], texels }
+    }
+
+    /// The bytes of a texture of these texels.
+    fn texture_bytes(&self, sampler: Sampler) -> usize {
+        let mut size = self.size;
+        let level = |[width, height, depth]: [usize; 3]| (width + 1) * height * depth * size_of::<[u32; 2]>();
+        let mut bytes = level(size);
+        while sampler.filter == Filter::Trilinear && size != [1; 3] {
+            size = size.map(|side| (side / 2).max(1));
+            bytes += level(size);
+        }
+        bytes
+    }
+
     fn at(&self, x: usize, y: usize, z: usize) -> u32 {
         let [width, height, _] = self.size;
         self.texels.get((z * height + y) * width + x).copied().unwrap_or(0)
