@@ -5,10 +5,15 @@ use fearless_simd::prelude::*;
 
 use super::cut::Cutter;
 use super::edge::{Edge, FixedPoint};
+use super::kernel::STRIP_SHIFT;
+use super::simple::Simplicity;
 use crate::geom::{IntRect, Point};
 use crate::num::fixed;
 use crate::num::lanes::{max_f32, min_f32, truncate_f32};
 use crate::path::polygons::Polygons;
+
+/// Outlines that reach further, in pixels, are not asked where they cross.
+const FARTHEST: f32 = 1e6;
 
 /// One draw's edges in one band: `edges[start..end]` of the band belong to command `command`.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +21,8 @@ pub(crate) struct BandItem {
     pub(crate) command: u32,
     start: u32,
     end: u32,
+    /// Which of the bins' crossed strips are its, if that is known.
+    crossed: Option<(u32, u32)>,
 }
 
 /// What one band has to draw, in the order of the commands.
@@ -33,6 +40,12 @@ pub(crate) struct EdgeBins {
     bands: Vec<BandList>,
     /// log2 of a band's height in 1/256 pixel.
     band_shift: u32,
+    /// Where the outlines of the shape in work end, and its corners if they are not among the points.
+    ends: Vec<usize>,
+    outline: Vec<FixedPoint>,
+    simplicity: Simplicity,
+    /// The strips in which shapes cross themselves.
+    crossed: Vec<i32>,
 }
 
 /// The edges of one draw in one band.
@@ -40,17 +53,24 @@ pub(crate) struct EdgeBins {
 pub(crate) struct Edges<'a> {
     points: &'a [FixedPoint],
     starts: &'a [u32],
+    crossed: Option<&'a [i32]>,
 }
 
 impl<'a> Edges<'a> {
     /// Those between each of the points numbered by `starts`, which go up, and the next.
     #[cfg(test)]
     pub(super) fn of(points: &'a [FixedPoint], starts: &'a [u32]) -> Self {
-        Self { points, starts }
+        Self { points, starts, crossed: None }
     }
 }
 
 impl Edges<'_> {
+    /// The band's strips in which the shape crosses itself, numbered from the canvas's top, if that is known: see
+    /// [`simple`](super::simple).
+    pub(crate) fn crossed(&self) -> Option<&[i32]> {
+        self.crossed
+    }
+
     /// How many edges there are; some may be horizontal.
     pub(crate) fn len(self) -> usize {
         self.starts.len()
@@ -115,6 +135,7 @@ impl EdgeBins {
     pub(crate) fn reset(&mut self, bands: usize, height_shift: u32) {
         self.band_shift = height_shift + fixed::SHIFT;
         self.points.clear();
+        self.crossed.clear();
         for band in &mut self.bands {
             band.edges.clear();
             band.items.clear();
@@ -130,21 +151,30 @@ impl EdgeBins {
     /// The edges of one of a band's items.
     pub(crate) fn edges<'a>(&'a self, band: &'a BandList, item: BandItem) -> Edges<'a> {
         let starts = band.edges.get(item.start as usize..item.end as usize).unwrap_or(&[]);
-        Edges { points: &self.points, starts }
+        let crossed = item.crossed.and_then(|(start, end)| self.crossed.get(start as usize..end as usize));
+        Edges { points: &self.points, starts, crossed }
     }
 
     /// Lists `command`, which has no edges, for every band that `bounds` (device pixels) touches.
     pub(crate) fn list(&mut self, command: u32, bounds: IntRect) {
         for band in self.bands_of(bounds.top << fixed::SHIFT, bounds.bottom << fixed::SHIFT) {
             let end = band.edges.len() as u32;
-            band.items.push(BandItem { command, start: end, end });
+            band.items.push(BandItem { command, start: end, end, crossed: None });
         }
     }
 
     /// Lists the edges of `polygons` within `clip` (device pixels) as those of `command`, for the bands that they touch.
-    /// `open_right` says that no pixel right of `clip` can be drawn.
+    /// `open_right` says that no pixel right of `clip` can be drawn, `prove` that it is worth looking where they cross.
     #[inline(always)]
-    pub(crate) fn add<S: Simd>(&mut self, simd: S, command: u32, polygons: &Polygons, clip: IntRect, open_right: bool) {
+    pub(crate) fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        command: u32,
+        polygons: &Polygons,
+        clip: IntRect,
+        open_right: bool,
+        prove: bool,
+    ) {
         match extent(simd, polygons.points()) {
             Some([left, top, right, bottom])
                 if left >= clip.left as f32
@@ -152,15 +182,26 @@ impl EdgeBins {
                     && right <= clip.right as f32
                     && bottom <= clip.bottom as f32 =>
             {
-                self.add_inside(simd, command, polygons, fixed::from_f32(top), fixed::from_f32(bottom));
+                self.add_inside(simd, command, polygons, fixed::from_f32(top), fixed::from_f32(bottom), prove);
             }
-            _ => self.add_cut(command, polygons, clip, open_right),
+            Some(extent) if prove && extent.iter().all(|v| v.abs() < FARTHEST) => {
+                // Before it is cut: what it is must not depend on where.
+                self.outline.clear();
+                self.ends.clear();
+                for polygon in polygons.iter() {
+                    append_closed(simd, polygon, &mut self.outline);
+                    self.ends.push(self.outline.len());
+                }
+                let proof = Proof::new(&mut self.simplicity, &self.outline, &self.ends, &mut self.crossed);
+                self.add_cut(command, polygons, clip, open_right, proof);
+            }
+            _ => self.add_cut(command, polygons, clip, open_right, Proof::default()),
         }
     }
 
     /// Lists polygons that lie between `top` and `bottom` (fixed point) and need no clipping.
     #[inline(always)]
-    fn add_inside<S: Simd>(&mut self, simd: S, command: u32, polygons: &Polygons, top: i32, bottom: i32) {
+    fn add_inside<S: Simd>(&mut self, simd: S, command: u32, polygons: &Polygons, top: i32, bottom: i32, prove: bool) {
         if top == bottom || u32::try_from(self.points.len() + 2 * polygons.points().len()).is_err() {
             return;
         }
@@ -169,14 +210,13 @@ impl EdgeBins {
         let Some(bands) = self.bands.get_mut(first_band as usize..=last_band as usize) else { return };
         for band in bands.iter_mut() {
             let start = band.edges.len() as u32;
-            band.items.push(BandItem { command, start, end: start });
+            band.items.push(BandItem { command, start, end: start, crossed: None });
         }
+        self.ends.clear();
         for polygon in polygons.iter() {
             let start = self.points.len();
-            append_fixed(simd, polygon, &mut self.points);
-            if let Some(back) = self.points.get(start) {
-                self.points.push(*back);
-            }
+            append_closed(simd, polygon, &mut self.points);
+            self.ends.push(self.points.len() - first);
             let end = self.points.len() as u32;
             if let [band] = bands {
                 band.edges.extend(start as u32..end.saturating_sub(1));
@@ -184,9 +224,14 @@ impl EdgeBins {
                 list_by_band(bands, &self.points, start, first_band << self.band_shift, self.band_shift);
             }
         }
+        let corners = self.points.get(first..).unwrap_or(&[]);
+        let mut proof = Proof::default();
+        if prove {
+            proof = Proof::new(&mut self.simplicity, corners, &self.ends, &mut self.crossed);
+        }
         let mut empty = true;
-        for band in bands {
-            empty &= close_item(band);
+        for (number, band) in (first_band..).zip(bands) {
+            empty &= close_item(band, proof.in_band(&self.crossed, number, self.band_shift));
         }
         if empty {
             self.points.truncate(first);
@@ -195,15 +240,15 @@ impl EdgeBins {
 
     /// Lists polygons that may leave the clip.
     #[inline(never)]
-    fn add_cut(&mut self, command: u32, polygons: &Polygons, clip: IntRect, open_right: bool) {
-        let Self { points, bands, band_shift } = self;
+    fn add_cut(&mut self, command: u32, polygons: &Polygons, clip: IntRect, open_right: bool, proof: Proof) {
+        let Self { points, bands, band_shift, crossed, .. } = self;
         let Some(bands) = touched(bands, clip.top << fixed::SHIFT, clip.bottom << fixed::SHIFT, *band_shift) else {
             return;
         };
         let first_top = (clip.top.max(0) << fixed::SHIFT) >> *band_shift << *band_shift;
         for band in bands.iter_mut() {
             let start = band.edges.len() as u32;
-            band.items.push(BandItem { command, start, end: start });
+            band.items.push(BandItem { command, start, end: start, crossed: None });
         }
         let mut cutter = Cutter::new(
             clip,
@@ -225,13 +270,39 @@ impl EdgeBins {
             },
         );
         polygons.iter().for_each(|polygon| cutter.polygon(polygon));
-        for band in bands {
-            close_item(band);
+        for (number, band) in (first_top >> *band_shift..).zip(bands) {
+            close_item(band, proof.in_band(crossed, number, *band_shift));
         }
     }
 
     fn bands_of(&mut self, top: i32, bottom: i32) -> &mut [BandList] {
         touched(&mut self.bands, top, bottom, self.band_shift).unwrap_or(&mut [])
+    }
+}
+
+/// Which of the bins' crossed strips belong to the shape in work; unknown by default.
+#[derive(Clone, Copy, Debug, Default)]
+struct Proof(Option<(usize, usize)>);
+
+impl Proof {
+    /// Looks where outlines cross, and lists the strips.
+    fn new(simplicity: &mut Simplicity, points: &[FixedPoint], ends: &[usize], crossed: &mut Vec<i32>) -> Self {
+        let start = crossed.len();
+        Self(simplicity.crossed_strips(points, ends).map(|strips| {
+            crossed.extend_from_slice(strips);
+            (start, crossed.len())
+        }))
+    }
+
+    /// Those of band `number`.
+    #[inline(always)]
+    fn in_band(self, crossed: &[i32], number: i32, band_shift: u32) -> Option<(u32, u32)> {
+        let (start, end) = self.0?;
+        let first = number << (band_shift - STRIP_SHIFT);
+        let last = first + (1 << (band_shift - STRIP_SHIFT));
+        let strips = crossed.get(start..end).unwrap_or(&[]);
+        let place = |strip: i32| (start + strips.partition_point(|other| *other < strip)) as u32;
+        Some((place(first), place(last)))
     }
 }
 
@@ -246,12 +317,12 @@ fn touched(bands: &mut [BandList], top: i32, bottom: i32, band_shift: u32) -> Op
     bands.get_mut((top >> band_shift) as usize..last)
 }
 
-/// Ends the band's last item; drops it if it has no edges, and says whether it has none.
+/// Ends the band's last item, whose shape crosses itself in the strips `crossed`, if that is known; drops it if it has no edges, and says whether it has none.
 #[inline(always)]
-fn close_item(band: &mut BandList) -> bool {
+fn close_item(band: &mut BandList, crossed: Option<(u32, u32)>) -> bool {
     let end = band.edges.len() as u32;
     let Some(item) = band.items.last_mut() else { return true };
-    item.end = end;
+    (item.end, item.crossed) = (end, crossed);
     let empty = item.start == end;
     if empty {
         band.items.pop();
@@ -327,6 +398,16 @@ fn rounded<S: Simd>(simd: S, block: [Point; 4]) -> [FixedPoint; 4] {
 }
 
 /// Appends device points within ±2^22 as fixed point, rounded to nearest, ties to even.
+/// A closed polygon's corners in fixed point, the first one once more at the end.
+#[inline(always)]
+fn append_closed<S: Simd>(simd: S, polygon: &[Point], out: &mut Vec<FixedPoint>) {
+    let start = out.len();
+    append_fixed(simd, polygon, out);
+    if let Some(first) = out.get(start) {
+        out.push(*first);
+    }
+}
+
 #[inline(always)]
 fn append_fixed<S: Simd>(simd: S, points: &[Point], out: &mut Vec<FixedPoint>) {
     let (blocks, rest) = points.as_chunks::<4>();
@@ -359,7 +440,7 @@ mod tests {
         polygons.end();
         let mut bins = EdgeBins::default();
         bins.reset(bands, height_shift);
-        dispatch!(SimdLevel::best(), simd => bins.add(simd, 7, &polygons, clip, open_right));
+        dispatch!(SimdLevel::best(), simd => bins.add(simd, 7, &polygons, clip, open_right, false));
         bins
     }
 

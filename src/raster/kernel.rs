@@ -63,6 +63,7 @@ impl Reach {
     }
 
     pub(crate) const NOTHING: Self = Self { low: i32::MIN, high: i32::MIN };
+    pub(crate) const EVERYTHING: Self = Self { low: i32::MIN, high: i32::MAX };
 
     /// The columns `first..end`.
     pub(crate) fn columns(first: usize, end: usize) -> Self {

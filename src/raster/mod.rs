@@ -26,6 +26,7 @@ pub(crate) mod kernel;
 pub mod line;
 pub mod polygon;
 pub(crate) mod sample;
+mod simple;
 mod stair;
 pub(crate) mod sweep;
 pub(crate) mod touch;

@@ -5,7 +5,7 @@ use fearless_simd::prelude::*;
 
 use super::cell::{Accumulator, BandPixel};
 use super::edge::Edge;
-use super::kernel::{CROWD, add_edge};
+use super::kernel::{CROWD, Reach, add_edge};
 use crate::num::fixed;
 use crate::style::FillRule;
 use crate::surface::block::BLOCK_HEIGHT;
@@ -17,7 +17,7 @@ pub(crate) struct Trail {
     chain: Option<Chain>,
 }
 
-/// Adds the edges of a shape, which go on from `trail`, and notes which pixels they touch once and more often. Horizontal
+/// Adds the edges of a shape, which go on from `trail`, within the reaches, and notes which pixels they touch once and more often. Horizontal
 /// ones add nothing, but touch pixels as well: windings change at them.
 ///
 /// The pixel in which an edge starts where the one before it ended is not touched twice by that: along each scanline
@@ -30,6 +30,7 @@ pub(crate) fn add_touching_edges<S: Simd>(
     edges: &[Edge],
     top: i32,
     strips: usize,
+    reaches: &[Reach],
     trail: &mut Trail,
 ) {
     cells.keep_marks();
@@ -50,7 +51,7 @@ pub(crate) fn add_touching_edges<S: Simd>(
             extended.is_simple().then_some(pixel)
         });
         let old = joint.and_then(|pixel| Some((pixel, *cells.marks(pixel)?)));
-        add_edge::<S, true>(simd, cells, *edge, top, strips, &[]);
+        add_edge::<S, true>(simd, cells, *edge, top, strips, reaches);
         if let Some((pixel, old)) = old
             && let Some(marks) = cells.marks(pixel)
         {
@@ -118,7 +119,7 @@ pub(crate) fn add_touching_crowd<S: Simd>(
 ) {
     let mut trail = Trail::default();
     for crowd in edges.chunks(CROWD - 1) {
-        add_touching_edges(simd, cells, crowd, top, strips, &mut trail);
+        add_touching_edges(simd, cells, crowd, top, strips, &[], &mut trail);
         cells.set_aside();
     }
     cells.bring_back(rule);
@@ -165,7 +166,7 @@ mod tests {
         let next = points.iter().cycle().skip(1);
         let edges: Vec<Edge> =
             points.iter().zip(next).map(|(a, b)| Edge { x0: a.0, y0: a.1, x1: b.0, y1: b.1 }).collect();
-        dispatch!(SimdLevel::best(), simd => add_touching_edges(simd, &mut cells, &edges, 0, 4, &mut Trail::default()));
+        dispatch!(SimdLevel::best(), simd => add_touching_edges(simd, &mut cells, &edges, 0, 4, &[], &mut Trail::default()));
         let mut found = Vec::new();
         for strip in 0..4 {
             for (column, marks) in cells.strip(strip).unwrap().marks.iter().enumerate() {

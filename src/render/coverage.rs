@@ -12,6 +12,7 @@ use crate::raster::batch::add_edges;
 use crate::raster::bins::Edges;
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
+use crate::raster::kernel::Reach;
 use crate::raster::sweep::{BlockSink, CoverageRule, sweep, sweep_rect};
 use crate::raster::{exact, kernel, sample, touch};
 use crate::style::{Antialias, FillRule};
@@ -105,37 +106,27 @@ fn accumulate_inner<S: Simd>(
         _ => {}
     }
     let top = frame.top << fixed::SHIFT;
-    let grid = match antialias {
-        Antialias::Analytic => {
-            let BandScratch { cells, reaches, visible, .. } = scratch;
-            reaches.clear();
-            reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
-            // Sums by the even-odd rule may wrap around: what is lost is even.
-            if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
-                kernel::add_crowd(simd, cells, edges, top, frame.strips, reaches);
-                return Coverage::Cells(rule.into());
-            }
+    // Where outlines do not cross, areas are exact.
+    let simple = edges.crossed().is_some_and(|crossed| crossed.is_empty());
+    if antialias == Antialias::Analytic || antialias == Antialias::Exact && simple {
+        let BandScratch { cells, reaches, visible, .. } = scratch;
+        reaches.clear();
+        reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
+        // Sums by the even-odd rule may wrap around: what is lost is even.
+        if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
+            kernel::add_crowd(simd, cells, edges, top, frame.strips, reaches);
+        } else {
             add_edges(simd, cells, edges, top, frame.strips, reaches);
-            return Coverage::Cells(rule.into());
         }
+        return Coverage::Cells(rule.into());
+    }
+    let grid = match antialias {
         Antialias::Exact => {
-            let edges = &*listed(&mut scratch.edges, edges, true);
-            if edges.len() >= kernel::CROWD {
-                touch::add_touching_crowd(simd, &mut scratch.cells, edges, top, frame.strips, rule);
-            } else {
-                let trail = &mut touch::Trail::default();
-                touch::add_touching_edges(simd, &mut scratch.cells, edges, top, frame.strips, trail);
-            }
-            for strip in 0..frame.strips {
-                let Some(cells) = scratch.cells.strip(strip) else { break };
-                let strip_top = frame.strip_top(strip) << fixed::SHIFT;
-                exact::resolve(simd, cells, edges, strip_top, rule, &mut scratch.exact);
-            }
-            scratch.cells.forget();
+            add_exactly(simd, frame, scratch, edges, rule);
             return Coverage::Cells(rule.into());
         }
         Antialias::Supersample(grid) => grid.clamp(1, 16),
-        Antialias::None => 1,
+        Antialias::None | Antialias::Analytic => 1,
     };
     let edges = &*listed(&mut scratch.edges, edges, false);
     for strip in 0..frame.strips {
@@ -145,6 +136,42 @@ fn accumulate_inner<S: Simd>(
         }
     }
     Coverage::Cells(CoverageRule::Samples(u16::from(grid) * u16::from(grid)))
+}
+
+/// Adds the edges of a shape that crosses itself, and looks again at the pixels in which sums of areas are not coverage.
+#[inline(always)]
+fn add_exactly<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch, edges: Edges<'_>, rule: FillRule) {
+    let top = frame.top << fixed::SHIFT;
+    let BandScratch { cells, reaches, visible, .. } = scratch;
+    let listed = &*listed(&mut scratch.edges, edges, true);
+    let crowded = edges.len() >= kernel::CROWD;
+    // Of each strip, what is seen of it; to find crossings all of its columns are needed.
+    let seen = |strip: usize| visible.get(strip).map_or(Reach::EVERYTHING, |blocks| reach(*blocks));
+    let is_seen = |strip: usize| visible.get(strip).is_none_or(|(first, end)| first < end);
+    let is_crossed = |strip: usize| {
+        is_seen(strip)
+            && edges.crossed().is_none_or(|crossed| crossed.contains(&(frame.strip_top(strip) / BLOCK_HEIGHT as i32)))
+    };
+    if crowded {
+        touch::add_touching_crowd(simd, cells, listed, top, frame.strips, rule);
+    } else {
+        if edges.crossed().is_some() {
+            reaches.clear();
+            let reach = |strip: usize| if is_crossed(strip) { Reach::NOTHING } else { seen(strip) };
+            reaches.extend((0..frame.strips).map(reach));
+            add_edges(simd, cells, edges, top, frame.strips, reaches);
+        }
+        reaches.clear();
+        let reach = |strip: usize| if is_crossed(strip) { Reach::EVERYTHING } else { Reach::NOTHING };
+        reaches.extend((0..frame.strips).map(reach));
+        touch::add_touching_edges(simd, cells, listed, top, frame.strips, reaches, &mut touch::Trail::default());
+    }
+    for strip in (0..frame.strips).filter(|strip| crowded || is_crossed(*strip)) {
+        let Some(cells) = cells.strip(strip) else { break };
+        let strip_top = frame.strip_top(strip) << fixed::SHIFT;
+        exact::resolve(simd, cells, listed, strip_top, rule, &mut scratch.exact);
+    }
+    cells.forget();
 }
 
 /// Edges side by side, for steps that look at them more than once; with horizontal ones, if asked for.

@@ -138,7 +138,8 @@ impl Chunk {
                 return;
             }
         }
-        self.bins.add(simd, number, &self.polygons, bounds, bounds.right >= frame.right);
+        let prove = antialias == Antialias::Exact;
+        self.bins.add(simd, number, &self.polygons, bounds, bounds.right >= frame.right, prove);
     }
 }
 
