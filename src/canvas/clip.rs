@@ -7,6 +7,7 @@ use super::state::{OpenLayer, OpenLayerKind};
 use crate::blend::BlendMode;
 use crate::color::unit;
 use crate::display_list::{ClipId, ClipKind, ClipNode, Command, DisplayList, Geometry, LayerStart};
+use crate::filter::pixels;
 use crate::geom::{IntRect, Rect};
 use crate::path::Path;
 use crate::style::{Antialias, FillRule};
@@ -125,7 +126,7 @@ impl Canvas<'_> {
         self.state = outer;
         self.saves = outer_saves;
         let size = match &kind {
-            OpenLayerKind::Filter(layer) => u64::from(layer.bounds.width()) * u64::from(layer.bounds.height()) * 4,
+            OpenLayerKind::Filter(layer) => pixels(layer.bounds) * 4,
             _ => 0,
         };
         kind.end(&mut self.list);

@@ -4,6 +4,7 @@ use super::Canvas;
 use crate::blend::BlendMode;
 use crate::color::Color;
 use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, Paint, Span};
+use crate::filter::pixels;
 use crate::geom::{FixedRect, IntRect, Point, Rect, Transform};
 use crate::paint::PreparedPaint;
 use crate::path::{LineCap, LineJoin, Path, Radii, Stroke};
@@ -163,11 +164,12 @@ impl Canvas<'_> {
         if self.state.bounds.is_empty() || paint.blend_mode == BlendMode::Destination {
             return;
         }
-        if let Some(shadow) = self.state.shadow {
-            self.draw_shadow(shadow, &paint, &mut geometry);
-        }
+        let shadow = self.state.shadow.map_or(0, |shadow| self.draw_shadow(shadow, &paint, &mut geometry));
         if let Some((geometry, bounds)) = geometry(self) {
             self.record(&paint, geometry, bounds);
+        }
+        if shadow > 0 {
+            self.count_pictures(shadow);
         }
     }
 
@@ -194,22 +196,22 @@ impl Canvas<'_> {
     }
 
     /// Records the shadow of a draw: the same draw in a recording of its own, on a surface that holds what of it the
-    /// blur brings into view.
+    /// blur brings into view. Gives the bytes that its picture will take.
     fn draw_shadow(
         &mut self,
         shadow: super::Shadow,
         paint: &Paint,
         geometry: &mut dyn FnMut(&mut Self) -> Option<(Geometry, IntRect)>,
-    ) {
+    ) -> u64 {
         let finite = shadow.offset_x.is_finite() && shadow.offset_y.is_finite() && shadow.deviation.is_finite();
         if !finite || shadow.color.a <= 0.0 || shadow.color.a.is_nan() {
-            return;
+            return 0;
         }
         let deviation = shadow.deviation.clamp(0.0, MAX_DEVIATION);
         let offset = |v: f32| v.round().clamp(-1e6, 1e6) as i32;
         let (dx, dy) = (offset(shadow.offset_x), offset(shadow.offset_y));
         let margin = (deviation * 3.0).ceil() as i32 + 1;
-        let visible = self.state.bounds;
+        let visible = self.near_bounds();
         let outer = self.state;
         let outer_list = std::mem::take(&mut self.list);
         // Where the draw itself lies, without the clip.
@@ -242,7 +244,7 @@ impl Canvas<'_> {
         )
         .intersect(visible);
         if list.commands.is_empty() || bounds.is_empty() {
-            return;
+            return 0;
         }
         self.list.commands.push(Command::Effect(Effect {
             list: Box::new(list),
@@ -252,6 +254,7 @@ impl Canvas<'_> {
             clip: self.state.clip,
             bounds,
         }));
+        pixels(bounds) * 4
     }
 
     /// Moves a recorded geometry by whole device pixels.

@@ -127,6 +127,10 @@ pub(super) struct FilterLayer {
     pub(super) extent: IntRect,
     /// The pixels of the layer's recording outside of which nothing is computed, in layers inside it either.
     pub(super) limit: IntRect,
+    /// The pixels of the layer's recording of which pictures can be made: all, unless these would be too many.
+    pub(super) near: IntRect,
+    /// How many pixels one of them may have.
+    pub(super) most: u64,
     pub(super) opacity: f32,
     pub(super) blend_mode: BlendMode,
     pub(super) clip: ClipId,

@@ -1,7 +1,8 @@
 //! Gaussian blur.
 
 use super::image::{Image, Work, grown};
-use super::lines::{Lanes, across, copy, down};
+use super::lines::{Columns, Lanes, NEIGHBOURS, copy};
+use super::source::Parts;
 use crate::error::Result;
 use crate::geom::IntRect;
 use crate::num::level::dispatch;
@@ -123,36 +124,91 @@ fn boxes(groups: &[&[usize]]) -> Vec<Pass> {
     passes
 }
 
+/// How much memory a blur takes while it works, beside what it reads and gives.
+#[derive(Clone, Copy, Debug)]
+struct Room {
+    /// Bytes of what is blurred downwards only. Of more, the rows are blurred in bands.
+    columns: usize,
+    /// Bytes of a part of the picture, where it is drawn in parts.
+    part: usize,
+}
+
+/// 2,000 rows of 3,000 columns fit. Bands that are low beside the blur's reach have its surroundings drawn again and again:
+/// a deviation of 1,000 at 2000² takes a quarter more time than with 32 MiB, for which a blur inside a blur has no room.
+const ROOM: Room = Room { columns: 24 << 20, part: 12 << 20 };
+
 /// Blurs a picture; the answer holds what of it lies in `area`.
 ///
 /// With a `region` each of three boxes blurs what the one before it left inside of that, as SVG renderers do that work on a
 /// surface of the region's size; without, nothing is lost in between.
 pub(super) fn blur(
-    image: &Image,
+    image: &dyn Parts,
     area: IntRect,
     region: Option<IntRect>,
     across_by: &Blur,
     down_by: &Blur,
     work: Work,
 ) -> Result<Image> {
+    blur_within(ROOM, image, area, region, (across_by, down_by), work)
+}
+
+/// As [`blur`]. The room that it has changes no pixel.
+fn blur_within(
+    room: Room,
+    image: &dyn Parts,
+    area: IntRect,
+    region: Option<IntRect>,
+    (across_by, down_by): (&Blur, &Blur),
+    work: Work,
+) -> Result<Image> {
     let reach = (across_by.reach(), down_by.reach());
     let area = grown(image.bounds(), reach, reach).intersect(area);
     // What lies further away than the blur reaches is not worth blurring downwards.
-    let image = image.crop(grown(area, reach, reach).intersect(image.bounds()))?;
-    let from = image.bounds();
+    let from = grown(area, reach, reach).intersect(image.bounds());
+    let mut out = Image::new(area)?;
     let sides = |low: i32, high: i32, start: i32| (low as isize - start as isize, high as isize - start as isize);
-    let rows = region.map(|region| sides(region.top, region.bottom, from.top));
-    let columns = region.map(|region| sides(region.left, region.right, from.left));
-    let blocks = down(&image, area.top, area.bottom, work, |source, offset, target| {
-        down_by.run(work, source, offset, target, rows);
-    })?;
-    across(&blocks, area.left, area.right, work, |source, offset, target| {
-        across_by.run(work, source, offset, target, columns);
+    let columns_at = region.map(|region| sides(region.left, region.right, from.left));
+    for band in bands(area, room.columns / Columns::bytes_of_a_row(from.width()).max(1)) {
+        let lines = grown(band, (0, reach.1), (0, reach.1));
+        let read = IntRect { top: lines.top.max(from.top), bottom: lines.bottom.min(from.bottom), ..from };
+        let rows_at = region.map(|region| sides(region.top, region.bottom, read.top));
+        let mut columns = Columns::new(IntRect { left: from.left, right: from.right, ..band })?;
+        for strip in strips(read, if image.is_whole() { usize::MAX } else { room.part }) {
+            columns.fill(&*image.part(strip)?, strip, work, |source, offset, target| {
+                down_by.run(work, source, offset, target, rows_at);
+            });
+        }
+        columns.write(&mut out, work, |source, offset, target| {
+            across_by.run(work, source, offset, target, columns_at);
+        });
+    }
+    Ok(out)
+}
+
+/// `area` in bands as high as each other, of about so many rows at most.
+fn bands(area: IntRect, rows: usize) -> impl Iterator<Item = IntRect> {
+    let height = area.height() as usize;
+    // Whole groups of lines.
+    let count = height.div_ceil(rows.max(NEIGHBOURS));
+    let rows = height.div_ceil(count.max(1)).next_multiple_of(NEIGHBOURS);
+    (0..height.div_ceil(rows.max(1))).map(move |band| {
+        let top = area.top + (band * rows) as i32;
+        IntRect { top, bottom: area.bottom.min(top.saturating_add(rows as i32)), ..area }
+    })
+}
+
+/// `area` in strips of columns, whole blocks, each a picture of about so many bytes at most.
+fn strips(area: IntRect, bytes: usize) -> impl Iterator<Item = IntRect> {
+    let most = bytes / (area.height().max(1) as usize * 4);
+    let columns = (most / NEIGHBOURS * NEIGHBOURS).clamp(NEIGHBOURS, 1 << 20);
+    (0..(area.width() as usize).div_ceil(columns)).map(move |strip| {
+        let left = area.left + (strip * columns) as i32;
+        IntRect { left, right: area.right.min(left.saturating_add(columns as i32)), ..area }
     })
 }
 
 /// Blurs a picture by the same deviation in both directions, in pixels; the answer holds what of it lies in `area`.
-pub(crate) fn gaussian(image: &Image, area: IntRect, deviation: f32, work: Work) -> Result<Image> {
+pub(crate) fn gaussian(image: &dyn Parts, area: IntRect, deviation: f32, work: Work) -> Result<Image> {
     let both = Blur::new(deviation);
     blur(image, area, None, &both, &both, work)
 }
@@ -300,6 +356,7 @@ fn widths(deviation: f32) -> [usize; 3] {
 #[cfg(test)]
 mod tests {
     use super::super::image::tests::{WORK, noise};
+    use super::super::source::tests::InParts;
     use super::*;
     use crate::num::level::SimdLevel;
 
@@ -411,6 +468,39 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn neither_bands_nor_parts_change_a_pixel() {
+        let source = noise(IntRect::from_ltrb(-30, -40, 61, 97), 7);
+        let parts = InParts(source.clone());
+        for (deviation, size) in [(0.7, 200), (3.3, 200), (24.0, 200), (120.0, 600), (1000.0, 2000)] {
+            let (across_by, down_by) = (Blur::new(deviation), Blur::new(deviation * 0.8));
+            let both = (&across_by, &down_by);
+            for region in [None, Some(IntRect::from_ltrb(-25, -38, size / 3, 90))] {
+                let area = IntRect::from_ltrb(-21, -size / 3, 40, size / 2).intersect(region.unwrap_or(LARGE));
+                let whole = blur(&source, area, region, &across_by, &down_by, WORK).unwrap();
+                for (columns, part) in [(1, 1), (40_000, 9_000), (20_000, 1 << 20), (1 << 20, 20_000)] {
+                    for image in [&source as &dyn Parts, &parts] {
+                        let found = blur_within(Room { columns, part }, image, area, region, both, WORK).unwrap();
+                        assert!(found == whole, "{deviation} {region:?} {columns} {part} {}", image.is_whole());
+                    }
+                }
+            }
+        }
+    }
+
+    const LARGE: IntRect = IntRect::from_ltrb(-5000, -5000, 5000, 5000);
+
+    #[test]
+    fn bands_and_strips_are_all_there_is() {
+        let area = IntRect::from_ltrb(-7, 5, 93, 105);
+        let found: Vec<_> = bands(area, 40).map(|band| (band.top, band.bottom)).collect();
+        assert_eq!(found, [(5, 53), (53, 101), (101, 105)]);
+        let found: Vec<_> = strips(area, 100 * 4 * 50).map(|strip| (strip.left, strip.right)).collect();
+        assert_eq!(found, [(-7, 41), (41, 89), (89, 93)]);
+        assert_eq!((bands(area, 1000).collect(), strips(area, usize::MAX).collect()), (vec![area], vec![area]));
+        assert_eq!(bands(IntRect::EMPTY, 0).count() + strips(IntRect::EMPTY, 0).count(), 0);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::blur::{Blur, blur};
 use super::composite;
 use super::image::{Image, Work, moved};
 use super::offset::offset;
+use super::source::Parts;
 use crate::blend::BlendMode;
 use crate::color::Color;
 use crate::error::Result;
@@ -20,7 +21,7 @@ pub(super) struct DropShadow {
 
 /// The picture over its shadow, in `area`.
 pub(super) fn drop_shadow(
-    image: &Image,
+    image: &dyn Parts,
     area: IntRect,
     region: Option<IntRect>,
     shadow: &DropShadow,
@@ -31,7 +32,7 @@ pub(super) fn drop_shadow(
     let mut cast = blur(image, inside, region, &shadow.across, &shadow.down, work)?;
     tint(&mut cast, shadow.color, work);
     let cast = offset(&cast, area, dx, dy)?;
-    composite::blend(image, cast, area, BlendMode::SourceOver, work)
+    composite::blend(&*image.part(area)?, cast, area, BlendMode::SourceOver, work)
 }
 
 const EVERYTHING: IntRect = IntRect::from_ltrb(i32::MIN, i32::MIN, i32::MAX, i32::MAX);

@@ -1,7 +1,8 @@
 //! Sixteen rows or columns at a time: what works along one direction is written once, and sees neither.
 //!
 //! A line's position holds the RGBA of sixteen neighbours, 64 bytes, so that the work along it goes in vectors.
-//! [`down`] takes columns out of a picture, [`across`] takes rows out of what that gives.
+//! [`down`] takes columns out of a picture, [`across`] takes rows out of what that gives. Who has the picture in parts, or
+//! wants the rows in parts, calls [`Columns::fill`] and [`Columns::write`].
 
 use crate::error::Result;
 use crate::geom::IntRect;
@@ -11,7 +12,7 @@ use crate::surface::allocate;
 use super::image::{Image, Work};
 
 /// Pixels side by side in a position.
-const NEIGHBOURS: usize = 16;
+pub(super) const NEIGHBOURS: usize = 16;
 const BYTES: usize = NEIGHBOURS * 4;
 /// One position of sixteen lines.
 pub(super) type Lanes = [u8; BYTES];
@@ -32,33 +33,10 @@ pub(super) fn down(
     f: impl Fn(&[Lanes], isize, &mut [Lanes]) + Sync,
 ) -> Result<Columns> {
     let from = image.bounds();
-    let bounds = IntRect::from_ltrb(from.left, top, from.right, bottom);
-    if bounds.is_empty() || from.is_empty() {
-        return Ok(Columns { bounds: IntRect::EMPTY, data: Vec::new() });
-    }
-    let blocks = (from.width() as usize).div_ceil(NEIGHBOURS);
-    let rows = bounds.height() as usize;
-    let mut data = allocate(blocks * rows * BYTES)?;
-    let jobs: Vec<_> = data.chunks_mut(rows * BYTES).enumerate().collect();
-    pool::for_each(work.threads, jobs, |(block, target)| {
-        let left = from.left + (block * NEIGHBOURS) as i32;
-        let source: Vec<Lanes> = (from.top..from.bottom)
-            .map(|y| {
-                let (_, pixels) = image.part(y, left, left + NEIGHBOURS as i32);
-                let mut lanes = [0; BYTES];
-                if let Some(whole) = pixels.as_flattened().first_chunk() {
-                    lanes = *whole;
-                } else {
-                    for (lane, byte) in lanes.iter_mut().zip(pixels.as_flattened()) {
-                        *lane = *byte;
-                    }
-                }
-                lanes
-            })
-            .collect();
-        f(&source, top as isize - from.top as isize, target.as_chunks_mut().0);
-    });
-    Ok(Columns { bounds, data })
+    let bounds = if from.is_empty() { from } else { IntRect { top, bottom, ..from } };
+    let mut columns = Columns::new(bounds)?;
+    columns.fill(image, from, work, f);
+    Ok(columns)
 }
 
 /// Works along rows as [`down`] does along columns; the answer has the columns `left..right`.
@@ -69,40 +47,99 @@ pub(super) fn across(
     work: Work,
     f: impl Fn(&[Lanes], isize, &mut [Lanes]) + Sync,
 ) -> Result<Image> {
-    let from = columns.bounds;
-    let mut image = Image::new(IntRect::from_ltrb(left, from.top, right, from.bottom))?;
-    let width = image.bounds().width() as usize;
-    if width == 0 {
-        return Ok(image);
+    let mut image = Image::new(IntRect { left, right, ..columns.bounds })?;
+    columns.write(&mut image, work, f);
+    Ok(image)
+}
+
+impl Columns {
+    /// Transparent columns with memory for `bounds`.
+    pub(super) fn new(bounds: IntRect) -> Result<Self> {
+        if bounds.is_empty() {
+            return Ok(Self { bounds: IntRect::EMPTY, data: Vec::new() });
+        }
+        Ok(Self { bounds, data: allocate(Self::bytes_of_a_row(bounds.width()) * bounds.height() as usize)? })
     }
-    let rows = from.height() as usize;
-    let positions: &[Lanes] = columns.data.as_chunks().0;
-    let jobs: Vec<_> = image.pixels_mut().chunks_mut(width * NEIGHBOURS).enumerate().collect();
-    pool::for_each(work.threads, jobs, |(group, pixels)| {
-        let first = group * NEIGHBOURS;
-        let count = pixels.len() / width;
-        let mut source = vec![[0; BYTES]; from.width() as usize];
-        for (block, source) in source.chunks_mut(NEIGHBOURS).enumerate() {
-            let start = block * rows + first;
-            for (row, lanes) in positions.get(start..start + count).unwrap_or(&[]).iter().enumerate() {
-                for (position, pixel) in source.iter_mut().zip(lanes.as_chunks::<4>().0) {
-                    if let Some(place) = position.as_chunks_mut::<4>().0.get_mut(row) {
-                        *place = *pixel;
+
+    /// How many bytes a row of so many pixels takes.
+    pub(super) fn bytes_of_a_row(width: u32) -> usize {
+        (width as usize).div_ceil(NEIGHBOURS) * BYTES
+    }
+
+    /// Works along the columns `from.left..from.right`, whole blocks of these, with the pixels that `image` has in `from`.
+    pub(super) fn fill(
+        &mut self,
+        image: &Image,
+        from: IntRect,
+        work: Work,
+        f: impl Fn(&[Lanes], isize, &mut [Lanes]) + Sync,
+    ) {
+        let bounds = self.bounds;
+        if bounds.is_empty() || from.is_empty() {
+            return;
+        }
+        let rows = bounds.height() as usize;
+        let first = from.left.abs_diff(bounds.left) as usize / NEIGHBOURS;
+        let blocks = (from.width() as usize).div_ceil(NEIGHBOURS);
+        let jobs: Vec<_> = self.data.chunks_mut(rows * BYTES).skip(first).take(blocks).enumerate().collect();
+        pool::for_each(work.threads, jobs, |(block, target)| {
+            let left = from.left + (block * NEIGHBOURS) as i32;
+            let right = from.right.min(left + NEIGHBOURS as i32);
+            let source: Vec<Lanes> = (from.top..from.bottom)
+                .map(|y| {
+                    let (_, pixels) = image.part(y, left, right);
+                    let mut lanes = [0; BYTES];
+                    if let Some(whole) = pixels.as_flattened().first_chunk() {
+                        lanes = *whole;
+                    } else {
+                        for (lane, byte) in lanes.iter_mut().zip(pixels.as_flattened()) {
+                            *lane = *byte;
+                        }
+                    }
+                    lanes
+                })
+                .collect();
+            f(&source, bounds.top as isize - from.top as isize, target.as_chunks_mut().0);
+        });
+    }
+
+    /// Works along the rows, and writes what comes of it to the picture, which has them.
+    pub(super) fn write(&self, image: &mut Image, work: Work, f: impl Fn(&[Lanes], isize, &mut [Lanes]) + Sync) {
+        let (from, to) = (self.bounds, image.bounds());
+        let width = to.width() as usize;
+        if width == 0 || from.is_empty() {
+            return;
+        }
+        let rows = from.height() as usize;
+        let positions: &[Lanes] = self.data.as_chunks().0;
+        let first_pixel = from.top.abs_diff(to.top) as usize * width;
+        let pixels = image.pixels_mut().get_mut(first_pixel..first_pixel + rows * width).unwrap_or(&mut []);
+        let jobs: Vec<_> = pixels.chunks_mut(width * NEIGHBOURS).enumerate().collect();
+        pool::for_each(work.threads, jobs, |(group, pixels)| {
+            let first = group * NEIGHBOURS;
+            let count = pixels.len() / width;
+            let mut source = vec![[0; BYTES]; from.width() as usize];
+            for (block, source) in source.chunks_mut(NEIGHBOURS).enumerate() {
+                let start = block * rows + first;
+                for (row, lanes) in positions.get(start..start + count).unwrap_or(&[]).iter().enumerate() {
+                    for (position, pixel) in source.iter_mut().zip(lanes.as_chunks::<4>().0) {
+                        if let Some(place) = position.as_chunks_mut::<4>().0.get_mut(row) {
+                            *place = *pixel;
+                        }
                     }
                 }
             }
-        }
-        let mut target = vec![[0; BYTES]; width];
-        f(&source, left as isize - from.left as isize, &mut target);
-        for (row, pixels) in pixels.chunks_mut(width).enumerate() {
-            for (pixel, position) in pixels.iter_mut().zip(&target) {
-                if let Some(value) = position.as_chunks::<4>().0.get(row) {
-                    *pixel = *value;
+            let mut target = vec![[0; BYTES]; width];
+            f(&source, to.left as isize - from.left as isize, &mut target);
+            for (row, pixels) in pixels.chunks_mut(width).enumerate() {
+                for (pixel, position) in pixels.iter_mut().zip(&target) {
+                    if let Some(value) = position.as_chunks::<4>().0.get(row) {
+                        *pixel = *value;
+                    }
                 }
             }
-        }
-    });
-    Ok(image)
+        });
+    }
 }
 
 /// The positions of `source` that lie where the target's do; for a direction in which nothing happens.

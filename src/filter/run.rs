@@ -17,6 +17,7 @@ use super::lighting::{self, Map};
 use super::morphology::morphology;
 use super::offset::{offset, whole_pixels};
 use super::picture::picture;
+use super::source::{ALWAYS_WHOLE, Converted, Parts, Source, blacken, last_that, pixels};
 use super::space::{color_in, convert};
 use super::tile::tile;
 use super::turbulence::turbulence;
@@ -30,6 +31,10 @@ pub(crate) struct PlacedFilter {
     grid: Grid,
     /// The pixels of the filter's region.
     region: IntRect,
+    /// The pixels outside of which pictures in between are transparent: all, unless these would be too large.
+    kept: IntRect,
+    /// How many pixels a picture in between may have.
+    most: u64,
     steps: Vec<Step>,
     /// The pixels of the source graphic that matter.
     source: IntRect,
@@ -85,17 +90,71 @@ struct Step {
     subregion: IntRect,
     /// The pixels of the result that later steps ask for.
     wanted: IntRect,
+    /// The pixels of the source graphic that it reads at once.
+    source: IntRect,
 }
 
 impl PlacedFilter {
     /// Places a filter. `visible` is what of its result can be seen; nothing outside `limit` is computed, however far a
     /// filter reaches.
-    pub(crate) fn new(filter: Arc<Filter>, grid: Grid, visible: IntRect, limit: IntRect) -> Self {
+    ///
+    /// Pictures in between have `most` pixels, or as many as `visible` or [`ALWAYS_WHOLE`]: where they would have more, they
+    /// hold less of the surroundings. The source graphic does not need to, where it is only blurred.
+    pub(crate) fn new(filter: Arc<Filter>, grid: Grid, visible: IntRect, limit: IntRect, most: u64) -> Self {
         let region = filter.region.map_or(limit, |region| grid.pixels(region)).intersect(limit);
-        let mut placed = Self { filter, grid, region, steps: Vec::new(), source: IntRect::EMPTY };
+        let most = most.max(ALWAYS_WHOLE).max(pixels(visible));
+        let (steps, source) = (Vec::new(), IntRect::EMPTY);
+        let mut placed = Self { filter, grid, region, kept: region, most, steps, source };
         placed.find_subregions();
         placed.find_wanted(visible);
+        if !placed.fits() {
+            placed.keep_less(visible);
+        }
         placed
+    }
+
+    /// Whether no picture in between is too large.
+    fn fits(&self) -> bool {
+        self.steps.iter().all(|step| pixels(step.wanted) <= self.most && pixels(step.source) <= self.most)
+    }
+
+    /// Keeps as much of the surroundings as fits, on each side the same share of what is asked for.
+    fn keep_less(&mut self, visible: IntRect) {
+        const PARTS: i64 = 256;
+        let asked = self.steps.iter().fold(visible, |all, step| union(all, union(step.wanted, step.source)));
+        let kept = |parts: i64| {
+            let side = |from: i32, to: i32| from + ((i64::from(to) - i64::from(from)) * parts / PARTS) as i32;
+            IntRect::from_ltrb(
+                side(visible.left, asked.left),
+                side(visible.top, asked.top),
+                side(visible.right, asked.right),
+                side(visible.bottom, asked.bottom),
+            )
+        };
+        let place = |placed: &mut Self, parts: i64| {
+            placed.kept = kept(parts).intersect(placed.region);
+            placed.find_wanted(visible);
+        };
+        let mut trial = self.clone();
+        let parts = last_that(PARTS, |parts| {
+            place(&mut trial, parts);
+            trial.fits()
+        });
+        place(self, parts);
+    }
+
+    /// How many pixels the source graphic may have to be drawn as a whole; of more, it is drawn where it is read.
+    ///
+    /// For a single blur it makes no difference how it is drawn; others would have parts drawn for each of them.
+    pub(crate) fn most_of_source(&self) -> u64 {
+        let reads_source = |(index, primitive): &(usize, &Primitive)| {
+            primitive.kind.inputs().into_iter().any(|input| self.result_of(input, *index).is_none())
+        };
+        let mut readers = self.filter.primitives.iter().enumerate().filter(reads_source);
+        match (readers.next(), readers.next()) {
+            (Some((_, Primitive { kind: Kind::GaussianBlur { .. }, .. })), None) => ALWAYS_WHOLE,
+            _ => self.most,
+        }
     }
 
     /// The pixels of the source graphic that the filter reads.
@@ -125,7 +184,7 @@ impl PlacedFilter {
                 },
                 _ => own,
             };
-            self.steps.push(Step { subregion, wanted: IntRect::EMPTY });
+            self.steps.push(Step { subregion, ..Step::default() });
         }
     }
 
@@ -144,6 +203,10 @@ impl PlacedFilter {
 
     fn find_wanted(&mut self, visible: IntRect) {
         let filter = Arc::clone(&self.filter);
+        self.source = IntRect::EMPTY;
+        for step in &mut self.steps {
+            (step.wanted, step.source) = (IntRect::EMPTY, IntRect::EMPTY);
+        }
         if let (Some(last), Some(primitive)) = (self.steps.last_mut(), filter.primitives.last()) {
             last.wanted = match primitive.kind {
                 Kind::Offset { .. } => visible.intersect(self.region),
@@ -157,18 +220,38 @@ impl PlacedFilter {
             }
             for (place, input) in primitive.kind.inputs().into_iter().enumerate() {
                 let area = self.read(&primitive.kind, place, input, index, wanted).intersect(self.region);
+                let kept = area.intersect(self.kept);
+                let in_parts = self.reads_in_parts(&primitive.kind);
                 let result = self.result_of(input, index);
                 let is_offset = result
                     .and_then(|result| filter.primitives.get(result))
                     .is_some_and(|primitive| matches!(primitive.kind, Kind::Offset { .. }));
                 match result.and_then(|result| self.steps.get_mut(result)) {
                     Some(step) => {
-                        let area = if is_offset { area } else { area.intersect(step.subregion) };
+                        let area = if is_offset { kept } else { kept.intersect(step.subregion) };
                         step.wanted = union(step.wanted, area);
                     }
-                    None => self.source = union(self.source, area),
+                    None if in_parts => self.source = union(self.source, area),
+                    None => {
+                        self.source = union(self.source, kept);
+                        if let Some(step) = self.steps.get_mut(index) {
+                            step.source = union(step.source, kept);
+                        }
+                    }
                 }
             }
+        }
+    }
+
+    /// Whether a primitive reads its input part by part.
+    fn reads_in_parts(&self, kind: &Kind) -> bool {
+        match kind {
+            Kind::GaussianBlur { deviation_x, deviation_y, .. } => {
+                let (across, down) = self.blurs(*deviation_x, *deviation_y);
+                !(across.is_nothing() && down.is_nothing())
+            }
+            Kind::DropShadow { .. } => true,
+            _ => false,
         }
     }
 
@@ -237,9 +320,13 @@ impl PlacedFilter {
     }
 
     /// What the filter makes of the source graphic; in sRGB.
-    pub(crate) fn run(&self, source: Image, work: Work) -> Result<Image> {
-        // The source graphic, then the results of the primitives so far.
-        let pictures = RefCell::new(vec![Some((Arc::new(source), ColorSpace::Srgb))]);
+    pub(crate) fn run(&self, source: Source<'_>, work: Work) -> Result<Image> {
+        let (whole, parts) = match source {
+            Source::Picture(image) => (Some((Arc::new(image), ColorSpace::Srgb)), None),
+            Source::Parts(parts) => (None, Some(parts)),
+        };
+        // The source graphic, if it is a picture, then the results of the primitives so far.
+        let pictures = RefCell::new(vec![whole]);
         // The last primitive that reads each of them: it may change it, and after it the picture is dropped.
         let mut last_use = vec![0; self.steps.len() + 1];
         for (index, primitive) in self.filter.primitives.iter().enumerate() {
@@ -260,7 +347,9 @@ impl PlacedFilter {
                         primitive.kind.inputs().into_iter().filter(|i| self.place_of(*i, index) == place).count();
                     reads == 1 && last_use.get(place) == Some(&index)
                 };
-                let inputs = Inputs { placed: self, pictures: &pictures, handed_over: &handed_over, index, work };
+                let parts = parts.as_deref();
+                let inputs =
+                    Inputs { placed: self, parts, pictures: &pictures, handed_over: &handed_over, index, work };
                 let (image, space) = inputs.step(primitive, step)?;
                 Some((Arc::new(image), space))
             };
@@ -286,6 +375,8 @@ impl PlacedFilter {
 /// What a primitive finds when its turn comes.
 struct Inputs<'a> {
     placed: &'a PlacedFilter,
+    /// The source graphic, if it is drawn where it is read.
+    parts: Option<&'a dyn Parts>,
     pictures: &'a RefCell<Vec<Option<(Arc<Image>, ColorSpace)>>>,
     /// Whether a picture is given away where it is read.
     handed_over: &'a dyn Fn(usize) -> bool,
@@ -294,8 +385,30 @@ struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
+    /// The source graphic's parts, if they are what an input names.
+    fn parts_of(&self, input: Input) -> Option<&dyn Parts> {
+        self.parts.filter(|_| self.placed.place_of(input, self.index) == 0)
+    }
+
     /// An input as it is, and its space. A step asks for each of its inputs once.
-    fn raw(&self, input: Input) -> (Arc<Image>, ColorSpace) {
+    fn raw(&self, input: Input) -> Result<(Arc<Image>, ColorSpace)> {
+        let (image, space) = match self.parts_of(input) {
+            Some(parts) => {
+                let area = self.placed.steps.get(self.index).map_or(IntRect::EMPTY, |step| step.source);
+                (Arc::new(parts.part(area)?.into_owned()), ColorSpace::Srgb)
+            }
+            None => self.picture(input),
+        };
+        if input != Input::SourceAlpha {
+            return Ok((image, space));
+        }
+        let mut image = Arc::unwrap_or_clone(image);
+        blacken(&mut image, self.work);
+        Ok((Arc::new(image), space))
+    }
+
+    /// A picture that was made before.
+    fn picture(&self, input: Input) -> (Arc<Image>, ColorSpace) {
         let place = self.placed.place_of(input, self.index);
         let mut pictures = self.pictures.borrow_mut();
         let picture = match pictures.get_mut(place) {
@@ -303,34 +416,35 @@ impl Inputs<'_> {
             Some(picture) => picture.clone(),
             None => None,
         };
-        let (image, space) = picture.unwrap_or_else(|| (Arc::new(Image::empty()), ColorSpace::Srgb));
-        if input != Input::SourceAlpha {
-            return (image, space);
-        }
-        let mut image = Arc::unwrap_or_clone(image);
-        image.for_pixels(self.work, |pixels| {
-            for pixel in pixels {
-                *pixel = [0, 0, 0, pixel[3]];
-            }
-        });
-        (Arc::new(image), space)
+        picture.unwrap_or_else(|| (Arc::new(Image::empty()), ColorSpace::Srgb))
     }
 
     /// An input in the given space, shared where possible.
-    fn shared(&self, input: Input, space: ColorSpace) -> Arc<Image> {
-        let (image, own) = self.raw(input);
+    fn shared(&self, input: Input, space: ColorSpace) -> Result<Arc<Image>> {
+        let (image, own) = self.raw(input)?;
         // Black is black in both.
         if own == space || input == Input::SourceAlpha {
-            return image;
+            return Ok(image);
         }
         let mut image = Arc::unwrap_or_clone(image);
         convert(&mut image, own, space, self.work);
-        Arc::new(image)
+        Ok(Arc::new(image))
     }
 
     /// An input in the given space, to change.
-    fn owned(&self, input: Input, space: ColorSpace) -> Image {
-        Arc::unwrap_or_clone(self.shared(input, space))
+    fn owned(&self, input: Input, space: ColorSpace) -> Result<Image> {
+        Ok(Arc::unwrap_or_clone(self.shared(input, space)?))
+    }
+
+    /// An input in the given space, for a primitive that reads it part by part.
+    fn in_parts(&self, input: Input, space: ColorSpace) -> Result<Box<dyn Parts + '_>> {
+        Ok(match self.parts_of(input) {
+            Some(parts) => {
+                let alpha_only = input == Input::SourceAlpha;
+                Box::new(Converted { parts, alpha_only, space, work: self.work })
+            }
+            None => Box::new(self.shared(input, space)?),
+        })
     }
 
     /// A primitive's result and its space.
@@ -340,67 +454,67 @@ impl Inputs<'_> {
         let (region, grid) = (placed.region, &placed.grid);
         let image = match &primitive.kind {
             Kind::Blend { top, bottom, mode } => {
-                blend(&self.shared(*top, space), self.owned(*bottom, space), area, *mode, work)?
+                blend(&*self.shared(*top, space)?, self.owned(*bottom, space)?, area, *mode, work)?
             }
             Kind::ColorMatrix { input, matrix } if matrix.is_finite() => {
-                color_matrix(self.owned(*input, space), area, matrix, work)?
+                color_matrix(self.owned(*input, space)?, area, matrix, work)?
             }
             Kind::ColorMatrix { .. } => Image::empty(),
             Kind::ComponentTransfer { input, functions } => {
-                component_transfer(self.owned(*input, space), area, functions, work)?
+                component_transfer(self.owned(*input, space)?, area, functions, work)?
             }
             Kind::Composite { top, bottom, operator } => {
-                composite(&self.shared(*top, space), self.owned(*bottom, space), area, *operator, work)?
+                composite(&*self.shared(*top, space)?, self.owned(*bottom, space)?, area, *operator, work)?
             }
             Kind::ConvolveMatrix { input, matrix } => {
-                convolve(&self.shared(*input, space), area, region, matrix, work)?
+                convolve(&*self.shared(*input, space)?, area, region, matrix, work)?
             }
             Kind::DiffuseLighting { input, lighting } => {
-                lighting::diffuse(&self.raw(*input).0, area, region, lighting, &grid.map(), work)?
+                lighting::diffuse(&self.raw(*input)?.0, area, region, lighting, &grid.map(), work)?
             }
             Kind::SpecularLighting { input, lighting } => {
-                lighting::specular(&self.raw(*input).0, area, region, lighting, &grid.map(), work)?
+                lighting::specular(&self.raw(*input)?.0, area, region, lighting, &grid.map(), work)?
             }
             Kind::DisplacementMap { input, map, displacement } => {
                 let scale = (displacement.scale * grid.scale.0, displacement.scale * grid.scale.1);
                 // The picture's own colours are only moved.
-                let (image, own) = self.raw(*input);
+                let (image, own) = self.raw(*input)?;
                 if !(scale.0.is_finite() && scale.1.is_finite()) {
                     return Ok((Image::empty(), own));
                 }
-                return Ok((displace(&image, &self.shared(*map, space), area, displacement, scale, work)?, own));
+                return Ok((displace(&image, &*self.shared(*map, space)?, area, displacement, scale, work)?, own));
             }
             Kind::DropShadow { input, dx, dy, deviation_x, deviation_y, color } => {
                 let (across, down) = placed.blurs(*deviation_x, *deviation_y);
                 let color = color_in(space, *color);
                 let shadow = DropShadow { across, down, offset: placed.whole(*dx, *dy), color };
-                drop_shadow(&self.shared(*input, space), area, placed.cut(), &shadow, work)?
+                drop_shadow(&*self.in_parts(*input, space)?, area, placed.cut(), &shadow, work)?
             }
             Kind::Flood { color } => return Ok((flood(area, *color)?, ColorSpace::Srgb)),
             Kind::GaussianBlur { input, deviation_x, deviation_y } => {
                 let (across, down) = placed.blurs(*deviation_x, *deviation_y);
                 if across.is_nothing() && down.is_nothing() {
                     // Nothing is rounded, then.
-                    let (image, own) = self.raw(*input);
+                    let (image, own) = self.raw(*input)?;
                     return Ok((Arc::unwrap_or_clone(image).within(area)?, own));
                 }
-                blur(&self.shared(*input, space), area, placed.cut(), &across, &down, work)?
+                blur(&*self.in_parts(*input, space)?, area, placed.cut(), &across, &down, work)?
             }
             Kind::Image { image, destination } => {
                 return Ok((picture(image, area, grid.rect(*destination), work)?, ColorSpace::Srgb));
             }
-            Kind::Merge { inputs } => merge(inputs.iter().map(|input| Ok(self.owned(*input, space))), area, work)?,
+            Kind::Merge { inputs } => merge(inputs.iter().map(|input| self.owned(*input, space)), area, work)?,
             Kind::Morphology { input, operator, radius_x, radius_y } => match placed.radii(*radius_x, *radius_y) {
-                Some(radius) => morphology(&self.shared(*input, space), area, region, *operator, radius, work)?,
+                Some(radius) => morphology(&*self.shared(*input, space)?, area, region, *operator, radius, work)?,
                 None => Image::empty(),
             },
             Kind::Offset { input, dx, dy } => {
-                let (image, own) = self.raw(*input);
+                let (image, own) = self.raw(*input)?;
                 let (dx, dy) = placed.whole(*dx, *dy);
                 return Ok((offset(&image, area, dx, dy)?, own));
             }
             Kind::Tile { input } => {
-                let (image, own) = self.raw(*input);
+                let (image, own) = self.raw(*input)?;
                 let from = match placed.result_of(*input, self.index) {
                     Some(result) => placed.subregion(result),
                     None => region,
@@ -416,6 +530,7 @@ impl Inputs<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::image::tests::{WORK, image, noise};
+    use super::super::source::tests::InParts;
     use super::super::{Channel, ColorMatrix, CompositeOperator, ConvolveMatrix, DisplacementMap, MorphologyOperator};
     use super::*;
     use crate::blend::BlendMode;
@@ -424,12 +539,12 @@ mod tests {
     const LIMIT: IntRect = IntRect::from_ltrb(-500, -500, 500, 500);
 
     fn place(filter: &Filter, visible: IntRect) -> PlacedFilter {
-        PlacedFilter::new(Arc::new(filter.clone()), Grid::new(Transform::IDENTITY), visible, LIMIT)
+        PlacedFilter::new(Arc::new(filter.clone()), Grid::new(Transform::IDENTITY), visible, LIMIT, 0)
     }
 
     fn run(filter: &Filter, source: &Image, visible: IntRect) -> Image {
         let placed = place(filter, visible);
-        placed.run(source.crop(placed.source()).unwrap(), WORK).unwrap().crop(visible).unwrap()
+        placed.run(Source::Picture(source.crop(placed.source()).unwrap()), WORK).unwrap().crop(visible).unwrap()
     }
 
     #[test]
@@ -540,6 +655,88 @@ mod tests {
         ] {
             assert_eq!(run(&filter, &source, visible), whole.crop(visible).unwrap(), "{visible:?}");
         }
+    }
+
+    #[test]
+    fn a_source_in_parts_gives_the_same_pixels() {
+        let source = noise(IntRect::from_ltrb(-30, 5, 70, 60), 3);
+        let input = Input::SourceGraphic;
+        let one = |primitive: Primitive| {
+            let mut filter = Filter::new();
+            filter.add(primitive);
+            filter
+        };
+        let blur = |input| Kind::GaussianBlur { input, deviation_x: 4.0, deviation_y: 7.0 };
+        let shadow = |input| Kind::DropShadow {
+            input,
+            dx: 30.0,
+            dy: -4.0,
+            deviation_x: 5.0,
+            deviation_y: 0.0,
+            color: Color::from_rgba(0.9, 0.3, 0.1, 0.7),
+        };
+        let mut glow = Filter::new();
+        let soft = glow.add(blur(Input::SourceAlpha));
+        let fat = Kind::Morphology { input, operator: MorphologyOperator::Dilate, radius_x: 3.0, radius_y: 1.0 };
+        let fat = glow.add(Primitive::from(fat).with_color_space(ColorSpace::LinearRgb));
+        glow.add(Kind::Merge { inputs: vec![soft, fat, input] });
+        let mut cast = everything();
+        cast.add(Kind::Tile { input: Input::SourceAlpha });
+        for (name, filter) in [
+            ("blur", one(blur(input).into())),
+            ("linear", one(Primitive::from(blur(input)).with_color_space(ColorSpace::LinearRgb))),
+            ("alpha", one(blur(Input::SourceAlpha).into())),
+            ("region", one(blur(input).into()).with_region(Rect::from_xywh(-20.0, 0.0, 80.0, 50.0))),
+            ("no blur", one(Kind::GaussianBlur { input, deviation_x: 0.0, deviation_y: 0.0 }.into())),
+            ("shadow", one(shadow(input).into())),
+            (
+                "shadow of alpha",
+                one(Primitive::from(shadow(Input::SourceAlpha)).with_color_space(ColorSpace::LinearRgb)),
+            ),
+            ("glow", glow),
+            ("everything", everything()),
+            ("tile", cast),
+        ] {
+            for visible in [IntRect::from_ltrb(0, 0, 40, 30), IntRect::from_ltrb(-60, -40, 130, 90)] {
+                let placed = place(&filter, visible);
+                let parts = Source::Parts(Box::new(InParts(source.crop(placed.source()).unwrap())));
+                let found = placed.run(parts, WORK).unwrap().crop(visible).unwrap();
+                assert!(found == run(&filter, &source, visible), "{name} {visible:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn pictures_in_between_are_as_wide_as_fits() {
+        let visible = IntRect::from_ltrb(0, 0, 3000, 3000);
+        let limit = IntRect::from_ltrb(-6000, -6000, 9000, 9000);
+        let place = |filter: &Filter| {
+            PlacedFilter::new(Arc::new(filter.clone()), Grid::new(Transform::IDENTITY), visible, limit, 11_000_000)
+        };
+        let blur = |input| Kind::GaussianBlur { input, deviation_x: 500.0, deviation_y: 500.0 };
+        // A single blur's source may be as large as it likes.
+        let mut filter = Filter::new();
+        let first = filter.add(blur(Input::SourceGraphic));
+        let single = place(&filter);
+        assert!(single.source().width() > 5900 && single.kept == limit);
+        assert_eq!(single.most_of_source(), ALWAYS_WHOLE);
+        // What a second one reads may not; what the first reads for that may.
+        filter.add(blur(first));
+        let double = place(&filter);
+        let between = double.steps[0].wanted;
+        assert!(between.contains(visible) && (10_500_000..=11_000_000).contains(&pixels(between)), "{between:?}");
+        assert_eq!((double.source().left, double.result()), (between.left - (0 - single.source().left), visible));
+        // Nor may what others read.
+        let mut filter = Filter::new();
+        let input = Input::SourceGraphic;
+        filter.add(Kind::Morphology { input, operator: MorphologyOperator::Erode, radius_x: 2000.0, radius_y: 2000.0 });
+        let source = place(&filter).source();
+        assert!(source.contains(visible) && (10_500_000..=11_000_000).contains(&pixels(source)), "{source:?}");
+        // An offset asks for no more pixels than it gives.
+        let mut filter = Filter::new();
+        let first = filter.add(blur(Input::SourceGraphic));
+        filter.add(Kind::Offset { input: first, dx: 2000.0, dy: 0.0 });
+        assert_eq!(place(&filter).steps[0].wanted.left, -2000);
     }
 
     #[test]

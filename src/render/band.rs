@@ -7,6 +7,7 @@
 
 use fearless_simd::Simd;
 
+use super::Drawing;
 use super::clip_cache::{ClipCache, clip_for};
 use super::coverage::{Coverage, accumulate};
 use super::hidden::{find_hidden, find_visible};
@@ -59,12 +60,27 @@ pub(super) struct Frame<'a> {
     pub(super) rows: usize,
     pub(super) strips: usize,
     pub(super) blocks: usize,
+    /// The first and the end of the blocks that are drawn.
+    pub(super) seen: (usize, usize),
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    /// Band `index` of a drawing: `rows` rows from device row `top` on, in the blocks `seen`.
+    pub(super) fn new(drawing: &Drawing<'a>, index: usize, top: i32, rows: usize, seen: (usize, usize)) -> Self {
+        let Drawing { list, plan, chunks, frame } = *drawing;
+        let (strips, blocks) = (rows.div_ceil(BLOCK_HEIGHT), (frame.width() as usize).div_ceil(BLOCK_WIDTH));
+        Self { list, plan, chunks, index, top, rows, strips, blocks, seen }
+    }
+
     /// The band's device pixels, up to the end of the last block.
     pub(super) fn area(&self) -> IntRect {
         IntRect::from_xywh(0, self.top, (self.blocks * BLOCK_WIDTH) as u32, self.rows as u32)
+    }
+
+    /// The columns of `bounds` that are drawn.
+    pub(super) fn seen(&self, bounds: IntRect) -> IntRect {
+        let (first, end) = ((self.seen.0 * BLOCK_WIDTH) as i32, (self.seen.1 * BLOCK_WIDTH) as i32);
+        IntRect { left: bounds.left.max(first), right: bounds.right.min(end), ..bounds }
     }
 
     /// Device y of a strip's first row.
@@ -74,26 +90,14 @@ impl Frame<'_> {
     }
 }
 
-/// Paints band `index`, whose first row is device row `top`, onto `target`.
-#[expect(clippy::too_many_arguments, reason = "the frame's facts, passed once per band")]
-pub(super) fn render(
-    list: &DisplayList,
-    plan: &Plan,
-    chunks: &[Chunk],
-    index: usize,
-    top: i32,
-    mut target: Surface<'_>,
-    scratch: &mut BandScratch,
-    level: SimdLevel,
-) {
-    let (width, rows) = (target.width(), target.rows());
-    let strips = rows.div_ceil(BLOCK_HEIGHT);
-    let frame = Frame { list, plan, chunks, index, top, rows, strips, blocks: width.div_ceil(BLOCK_WIDTH) };
-    scratch.cells.resize(width, strips);
+/// Paints a band onto `target`, which holds the blocks that are drawn.
+pub(super) fn render(frame: &Frame<'_>, mut target: Surface<'_>, scratch: &mut BandScratch, level: SimdLevel) {
+    scratch.cells.resize(frame.blocks * BLOCK_WIDTH, frame.strips);
     scratch.clips.reset();
-    scratch.occlusion.reset(frame.blocks, strips);
+    scratch.occlusion.reset(frame.blocks, frame.strips);
+    scratch.occlusion.hide_outside(frame.seen, frame.blocks, frame.strips);
     scratch.kept.clear();
-    dispatch!(level, simd => render_with(simd, &frame, &mut target, scratch));
+    dispatch!(level, simd => render_with(simd, frame, &mut target, scratch));
     // A recording ends with every layer closed; were one open, its memory is kept all the same.
     scratch.spare_layers.append(&mut scratch.layers);
 }
@@ -125,7 +129,7 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                 Command::Clip(id) => scratch.clips.edges.push((id.0, chunk_index, *item)),
                 Command::BeginLayer(LayerStart { bounds, .. }) | Command::BeginMask(bounds) => {
                     let mut layer = scratch.spare_layers.pop().unwrap_or_default();
-                    layer.reset(*bounds);
+                    layer.reset(frame.seen(*bounds));
                     scratch.layers.push(layer);
                 }
                 Command::EndLayer(layer) => {

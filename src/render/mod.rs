@@ -13,6 +13,7 @@ mod kept;
 mod layer;
 mod occlusion;
 mod painter;
+mod parts;
 mod plan;
 mod prepare;
 mod settings;
@@ -20,12 +21,14 @@ mod surface;
 
 use std::sync::Mutex;
 
+pub(crate) use parts::Parts;
 pub use settings::RenderSettings;
 
 use crate::display_list::DisplayList;
 use crate::error::Result;
 use crate::geom::IntRect;
 use crate::surface::PixmapMut;
+use crate::surface::block::BLOCK_WIDTH;
 
 /// Working memory that outlives a frame: after the first, drawing alike frames allocates nothing.
 #[derive(Debug, Default)]
@@ -54,34 +57,65 @@ impl Renderer {
 
     /// Draws a recording whose pictures are made. `settings` are resolved.
     fn paint(&mut self, list: &DisplayList, plan: &plan::Plan, target: &mut PixmapMut<'_>, settings: RenderSettings) {
-        let (width, height) = (target.width(), target.height());
-        let frame = IntRect::from_xywh(0, 0, width, height);
-        let band_height = settings.band_height;
-        let bands = height.div_ceil(band_height) as usize;
+        let frame = IntRect::from_xywh(0, 0, target.width(), target.height());
+        let chunks = self.prepare(list, plan, frame, settings);
+        self.paint_part(list, plan, chunks, frame, frame, target, settings);
+    }
 
+    /// Lists the edges of a recording's shapes by band of `frame`, and says in how many chunks.
+    fn prepare(&mut self, list: &DisplayList, plan: &plan::Plan, frame: IntRect, settings: RenderSettings) -> usize {
+        let bands = frame.height().div_ceil(settings.band_height) as usize;
         let chunk_count = prepare::chunk_count(list.commands.len(), settings.threads);
         self.chunks.resize_with(chunk_count.max(self.chunks.len()), prepare::Chunk::default);
-        let Some(chunks) = self.chunks.get_mut(..chunk_count) else { return };
+        let Some(chunks) = self.chunks.get_mut(..chunk_count) else { return 0 };
         let ranges = prepare::split(list.commands.len(), chunk_count);
         let jobs: Vec<_> = chunks.iter_mut().zip(ranges).collect();
         crate::pool::for_each(settings.threads, jobs, |(chunk, range)| {
-            chunk.prepare(list, plan, range, frame, bands, band_height.trailing_zeros(), settings.level);
+            chunk.prepare(list, plan, range, frame, bands, settings.band_height.trailing_zeros(), settings.level);
         });
+        chunk_count
+    }
 
-        let chunks: &[prepare::Chunk] = chunks;
-        let scratch = &self.bands;
-        let stride = target.stride();
+    /// Draws what of a prepared frame lies in `area`, which starts with a block and a band and is what `target` holds.
+    /// Edges are those of the whole frame, so that no pixel depends on the area.
+    #[expect(clippy::too_many_arguments, reason = "the drawing, and where to")]
+    fn paint_part(
+        &self,
+        list: &DisplayList,
+        plan: &plan::Plan,
+        chunks: usize,
+        frame: IntRect,
+        area: IntRect,
+        target: &mut PixmapMut<'_>,
+        settings: RenderSettings,
+    ) {
+        let drawing = Drawing { list, plan, chunks: self.chunks.get(..chunks).unwrap_or(&[]), frame };
+        let band_height = settings.band_height;
+        let seen = (area.left as usize / BLOCK_WIDTH, (area.right as usize).div_ceil(BLOCK_WIDTH));
+        let first = area.top as usize / band_height as usize;
+        let (scratch, stride) = (&self.bands, target.stride());
+        let bands = area.height().div_ceil(band_height) as usize;
         let jobs: Vec<_> =
             target.bytes_mut().chunks_mut(stride * band_height as usize).enumerate().take(bands).collect();
         crate::pool::for_each(settings.threads, jobs, |(index, rows)| {
             let mut own = scratch.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
-            let top = index as u32 * band_height;
-            let surface =
-                surface::Surface::new(rows, stride, 0, width as usize, band_height.min(height - top) as usize);
-            band::render(list, plan, chunks, index, top as i32, surface, &mut own, settings.level);
+            let offset = index as u32 * band_height;
+            let count = band_height.min(area.height() - offset) as usize;
+            let surface = surface::Surface::new(rows, stride, seen.0, area.width() as usize, count);
+            let band = band::Frame::new(&drawing, first + index, area.top + offset as i32, count, seen);
+            band::render(&band, surface, &mut own, settings.level);
             if let Ok(mut all) = scratch.lock() {
                 all.push(own);
             }
         });
     }
+}
+
+/// A recording that is ready to be painted, band by band.
+#[derive(Clone, Copy)]
+struct Drawing<'a> {
+    list: &'a DisplayList,
+    plan: &'a plan::Plan,
+    chunks: &'a [prepare::Chunk],
+    frame: IntRect,
 }

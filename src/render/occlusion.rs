@@ -17,9 +17,12 @@ pub(super) struct Occlusion {
     words: usize,
     /// The front shape's first.
     claims: Vec<Claim>,
-    /// How many blocks are hidden.
+    /// How many blocks shapes hide.
     count: usize,
 }
+
+/// The order of claims that are not given back: shapes have lower ones.
+const NEVER: u32 = u32::MAX;
 
 /// Blocks of one word of `hidden` that a shape claims.
 #[derive(Clone, Copy, Debug)]
@@ -39,12 +42,22 @@ impl Occlusion {
         self.hidden.resize(self.words * strips, 0);
     }
 
+    /// Hides the blocks outside of `first..end` for good: nobody asks for them.
+    pub(super) fn hide_outside(&mut self, (first, end): (usize, usize), blocks: usize, strips: usize) {
+        for strip in 0..strips {
+            self.claim(NEVER, strip, 0, first);
+            self.claim(NEVER, strip, end, blocks);
+        }
+        // What no shape hides says nothing about whether the search for hidden blocks pays.
+        self.count = 0;
+    }
+
     /// Whether some block is hidden: if not, nothing needs to ask further.
     pub(super) fn is_some(&self) -> bool {
         !self.claims.is_empty()
     }
 
-    /// How many blocks are hidden.
+    /// How many blocks shapes hide.
     pub(super) fn count(&self) -> usize {
         self.count
     }
@@ -174,5 +187,21 @@ mod tests {
         assert!((0..70).all(|block| occlusion.is_hidden(0, block) == (60..67).contains(&block)));
         occlusion.release(3);
         assert!(!occlusion.is_some() && occlusion.visible(1, bounds) == (1, 70));
+    }
+
+    #[test]
+    fn what_nobody_asks_for_stays_hidden() {
+        let mut occlusion = Occlusion::default();
+        occlusion.reset(140, 2);
+        let bounds = IntRect::from_ltrb(0, 0, 140 * 16, 16);
+        occlusion.hide_outside((0, 140), 140, 2);
+        assert!(!occlusion.is_some());
+        occlusion.hide_outside((66, 128), 140, 2);
+        occlusion.claim(3, 1, 60, 67);
+        assert_eq!((occlusion.visible(0, bounds), occlusion.visible(1, bounds)), ((66, 128), (67, 128)));
+        assert_eq!(occlusion.count(), 1);
+        occlusion.release(3);
+        occlusion.release(u32::MAX - 1);
+        assert!(occlusion.is_some() && occlusion.visible(1, bounds) == (66, 128));
     }
 }

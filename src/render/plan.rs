@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use super::{RenderSettings, Renderer};
+use super::{Parts, RenderSettings};
 use crate::color::Color;
 use crate::display_list::{Command, DisplayList, Effect, EffectKind};
 use crate::error::Result;
-use crate::filter::{self, Image, PlacedFilter, Work};
+use crate::filter::{self, Image, PlacedFilter, Source, Work};
 use crate::geom::{IntRect, Transform};
 use crate::paint::PreparedPaint;
-use crate::surface::Pixmap;
 
 /// The pictures that the bands need.
 #[derive(Debug, Default)]
@@ -63,18 +62,17 @@ pub(super) fn plan(list: &DisplayList, frame: IntRect, settings: RenderSettings)
     (plan, result)
 }
 
-/// What the effect applies to, drawn.
-fn source(effect: &Effect, settings: RenderSettings) -> Result<Image> {
-    if effect.extent.is_empty() || effect.list.commands.is_empty() {
-        return Ok(Image::empty());
+/// What the effect applies to: drawn, if it may take so many pixels, or ready to be.
+fn source(effect: &Effect, most: u64, settings: RenderSettings) -> Result<Source<'_>> {
+    let Effect { extent, list, .. } = effect;
+    if extent.is_empty() || list.commands.is_empty() {
+        return Ok(Source::Picture(Image::empty()));
     }
-    let frame = IntRect::from_xywh(0, 0, effect.extent.width(), effect.extent.height());
-    // Pictures in it come first, so that effects in each other do not hold one surface for each.
-    let (plan, planned) = plan(&effect.list, frame, settings);
-    planned?;
-    let mut pixmap = Pixmap::new(frame.width(), frame.height())?;
-    Renderer::default().paint(&effect.list, &plan, &mut pixmap.as_mut(), settings);
-    Ok(Image::from_pixmap(pixmap, effect.extent.left, effect.extent.top))
+    let parts = Parts::new(list, *extent, settings)?;
+    if filter::pixels(*extent) > most {
+        return Ok(Source::Parts(Box::new(parts)));
+    }
+    Ok(Source::Picture(filter::Parts::part(&parts, *extent)?.into_owned()))
 }
 
 /// Draws a shadow's shapes, blurs their alpha and gives it the shadow's colour.
@@ -88,7 +86,9 @@ fn shadow(
 ) -> Result<Option<(PreparedPaint, IntRect)>> {
     let work = Work { threads: settings.threads, level: settings.level };
     let seen = IntRect::from_ltrb(bounds.left - dx, bounds.top - dy, bounds.right - dx, bounds.bottom - dy);
-    let mut image = filter::gaussian(&source(effect, settings)?, seen, deviation, work)?;
+    let source = source(effect, filter::ALWAYS_WHOLE, settings)?;
+    let mut image = filter::gaussian(source.as_parts(), seen, deviation, work)?;
+    drop(source);
     filter::tint(&mut image, color, work);
     Ok(paint(image, Transform::from_translate(dx as f32, dy as f32), 1.0, bounds))
 }
@@ -103,7 +103,7 @@ fn filtered(
     settings: RenderSettings,
 ) -> Result<Option<(PreparedPaint, IntRect)>> {
     let work = Work { threads: settings.threads, level: settings.level };
-    let image = filter.run(source(effect, settings)?, work)?;
+    let image = filter.run(source(effect, filter.most_of_source(), settings)?, work)?;
     Ok(paint(image, to_device, opacity, bounds))
 }
 

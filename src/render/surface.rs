@@ -25,16 +25,6 @@ impl<'a> Surface<'a> {
         Surface { data: self.data, ..*self }
     }
 
-    /// Pixels in a row.
-    pub(super) fn width(&self) -> usize {
-        self.row_bytes / 4
-    }
-
-    /// Rows.
-    pub(super) fn rows(&self) -> usize {
-        self.rows
-    }
-
     /// The rows of strip `strip` that exist: 0 ..= 8.
     #[inline(always)]
     pub(super) fn strip_rows(&self, strip: usize) -> usize {

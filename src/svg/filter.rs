@@ -175,7 +175,7 @@ impl Renderer<'_> {
         let Some(space) = canvas.filter_space() else { return nothing };
         let grid = Grid::new(space.grid);
         let whole = grid.pixels(subregion);
-        let area = whole.intersect(grid.pixels(convert::rect(filter.rect()))).intersect(space.limit);
+        let area = whole.intersect(grid.pixels(convert::rect(filter.rect()))).intersect(space.near());
         if area.is_empty() {
             return nothing;
         }

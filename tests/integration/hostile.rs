@@ -358,12 +358,30 @@ fn assert_drawn_within(name: &str, mebibytes: u32, content: &str) {
 #[cfg(target_os = "linux")]
 fn layers_take_their_pixels_and_64_mib() {
     const SHAPE: &str = "<path d='M0 0h2000v2000z' fill='red'/>";
+    const PLANE: &str = "<rect x='-10000' y='-10000' width='30000' height='30000' fill='red'/>";
     let filtered = |filter: &str, count: usize| {
         let region = "x='-1' y='-1' width='3' height='3'";
         let groups = format!("<g filter='url(#f)'>{SHAPE}</g>").repeat(count);
         format!("<filter id='f' {region}>{filter}</filter>{groups}")
     };
     let blur = "<feGaussianBlur stdDeviation='200'/>";
+    let wide = |filter: &str, content: &str| {
+        let region = "filterUnits='userSpaceOnUse' x='-10000' y='-10000' width='22000' height='22000'";
+        format!("<filter id='f' {region}>{filter}</filter><g filter='url(#f)'>{content}</g>")
+    };
+    let blur_300 = "<feGaussianBlur stdDeviation='300'/>";
+    let linear = "<feGaussianBlur color-interpolation-filters='linearRGB' stdDeviation='300 200'/>";
+    let glow = "<feGaussianBlur stdDeviation='300' result='a'/><feMerge><feMergeNode in='a'/><feMergeNode in='SourceGraphic'/></feMerge>";
+    let chain = "<feGaussianBlur stdDeviation='300'/><feGaussianBlur stdDeviation='300'/><feOffset dx='99'/>";
+    let circles: String = (0..100)
+        .map(|i| {
+            let (x, y, r) = (i * 7919 % 8000 - 3000, i * 104_729 % 8000 - 3000, 100 + i * 7);
+            format!(
+                "<circle cx='{x}.3' cy='{y}.7' r='{r}' fill='#{:06x}' fill-opacity='.6'/>",
+                i * 7_654_321 % 0xFF_FFFF
+            )
+        })
+        .collect();
     let masked = format!("<mask id='m'>{SHAPE}</mask><g mask='url(#m)'>{SHAPE}</g>");
     let clipped = format!("<clipPath id='m'>{SHAPE}</clipPath><g clip-path='url(#m)'>{SHAPE}</g>");
     // How many pictures of all of the canvas, which is one, are there at a time: groups and masks are drawn in bands and need none.
@@ -381,10 +399,55 @@ fn layers_take_their_pixels_and_64_mib() {
         // What was recorded is drawn when pictures that wait take 16 MiB: one or two of these. Within a group one more, of the group so far.
         ("forty blurs", 4, filtered(blur, 40)),
         ("forty blurs in a group", 6, format!("<g opacity='.5'>{}</g>", filtered(blur, 40))),
+        // Blurs that bring into view what lies far outside.
+        ("wide blur of a rectangle", 2, wide(blur_300, PLANE)),
+        ("wider blur of a rectangle", 2, wide("<feGaussianBlur stdDeviation='1000'/>", PLANE)),
+        ("wide blur of circles", 2, wide(blur_300, &circles)),
+        ("wide blur in linear light", 2, wide(linear, &circles)),
+        ("wide blur of alpha", 2, wide("<feGaussianBlur in='SourceAlpha' stdDeviation='300'/>", &circles)),
+        ("wide shadow", 3, wide("<feDropShadow dx='300' stdDeviation='300'/>", &circles)),
+        ("wide glow", 3, wide(glow, &circles)),
+        // What lies between primitives, or in a layer inside, has a picture.
+        ("blur of a blur, moved", 3, wide(chain, PLANE)),
+        ("wide erosion", 3, wide("<feMorphology operator='erode' radius='900'/>", PLANE)),
+        ("wide blur of a filtered group", 3, wide(blur_300, &format!("<g filter='url(#f)'>{circles}</g>"))),
+        ("wide blur of blurs", 5, wide(blur_300, &format!("{circles}<g filter='url(#f)'>{PLANE}</g>").repeat(3))),
     ];
     for (name, pictures, content) in cases {
         // The program, its libraries, the encoder and stacks take some 90 MiB of addresses, and less than 40 MiB of memory.
         assert_drawn_within(name, 64 + 90 + 4 * 2000 * 2000 * pictures / (1 << 20), &content);
+    }
+}
+
+/// The program draws no shadows of a canvas: this test draws some in a process of its own.
+#[test]
+#[cfg(target_os = "linux")]
+fn layers_take_their_pixels_and_64_mib_as_shadows_of_a_canvas() {
+    const WITHIN: &str = "RASTRUM_TEST_SHADOW_DEVIATION";
+    if let Some(deviation) = std::env::var(WITHIN).ok().and_then(|deviation| deviation.parse().ok()) {
+        let settings = rastrum::RenderSettings::default().with_threads(1);
+        let mut canvas = rastrum::Canvas::with_settings(2000, 2000, settings).unwrap();
+        let color = rastrum::Color::BLACK;
+        canvas.set_shadow(rastrum::Shadow { offset_x: 90.0, offset_y: 10.0, deviation, color });
+        canvas.fill_rect(rastrum::Rect::from_xywh(-9999.5, -9999.5, 30_000.0, 11_000.0), rastrum::Color::RED);
+        canvas.fill_circle((1000.0, 1000.0), 4000.0, rastrum::Color::RED.with_opacity(0.1));
+        canvas.set_shadow(rastrum::Shadow { offset_x: 9.0, offset_y: 10.0, deviation: 4.0, color });
+        for _ in 0..20 {
+            canvas.fill_rect(rastrum::Rect::from_xywh(2.5, 2.5, 1990.0, 1990.0), rastrum::Color::RED);
+        }
+        canvas.flush().unwrap();
+        assert!(canvas.into_pixmap().pixel(1000, 1500).is_some_and(|pixel| pixel[3] > 99));
+        return;
+    }
+    for deviation in ["300", "1000"] {
+        let name = "hostile::layers_take_their_pixels_and_64_mib_as_shadows_of_a_canvas";
+        // Its target, two shadows, and what the binary takes of addresses.
+        let script = format!("ulimit -v {} && exec \"$0\" --exact {name} --test-threads 1", (64 + 90 + 16 * 3) << 10);
+        let mut command = Command::new("sh");
+        command.args(["-c", &script]).arg(std::env::current_exe().unwrap()).env(WITHIN, deviation);
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{deviation}: {output:?}");
+        assert!(String::from_utf8_lossy(&output.stdout).contains("1 passed"), "{output:?}");
     }
 }
 
