@@ -355,6 +355,17 @@ fn assert_drawn_within(name: &str, mebibytes: u32, content: &str) {
 }
 
 #[test]
+fn many_layers_over_a_whole_picture_are_stopped_in_time() {
+    let folder = Folder::new();
+    // Shapes alone, in 40 KB: 500 times 4 million pixels of the slowest mode.
+    let layer = "<g style='mix-blend-mode:luminosity'><rect width='2000' height='2000' fill='#0963c77f'/></g>";
+    let text = svg(&layer.repeat(500)).replace("width='64' height='64'", "width='2000' height='2000'");
+    let output = folder.run(&text, &["--max-time", "0.1"]);
+    assert_refused("layers", &output);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--max-time"), "{output:?}");
+}
+
+#[test]
 #[cfg(target_os = "linux")]
 fn layers_take_their_pixels_and_64_mib() {
     const SHAPE: &str = "<path d='M0 0h2000v2000z' fill='red'/>";

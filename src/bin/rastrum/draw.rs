@@ -27,6 +27,9 @@ const LARGEST_STYLE_SHEET: u64 = 16 << 20;
 /// The most pixels of a picture that is drawn without supervision.
 const FEW_PIXELS: u64 = 1 << 22;
 
+/// And the most pixels that it has for each of its elements, any of which may blend all of them: about a second.
+const LITTLE_WORK: u64 = 1 << 28;
+
 /// Pictures of no more pixels are drawn on one thread: others would take longer to start.
 const FEWEST_PIXELS: u64 = 1 << 16;
 
@@ -63,15 +66,16 @@ pub(crate) fn draw_simple(
     let Source::File(path) = &task.source else { return None };
     let bytes = fs::metadata(path).ok().filter(|data| data.is_file() && data.len() <= simple::LONGEST as u64);
     let bytes = bytes.and_then(|_| fs::read(path).ok())?;
-    if arguments.stylesheet.is_some() || !simple::is_simple(&bytes) {
+    if arguments.stylesheet.is_some() {
         return None;
     }
+    let elements = simple::elements(&bytes)? as u64;
     let options = options(&task.source, arguments, fonts).ok()?;
     let tree = svg::parse(&bytes, &options).ok()?;
     let area = area(&tree, arguments).ok()?;
     let size = Size::of(arguments, area.width(), area.height());
-    let few = u64::from(size.width) * u64::from(size.height) <= FEW_PIXELS;
-    few.then(|| finish(task, arguments, &tree, started))
+    let pixels = u64::from(size.width) * u64::from(size.height);
+    (pixels <= FEW_PIXELS && pixels * elements <= LITTLE_WORK).then(|| finish(task, arguments, &tree, started))
 }
 
 /// Draws and writes what was parsed.

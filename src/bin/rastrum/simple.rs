@@ -33,15 +33,20 @@ const ELEMENTS: [&str; 17] = [
     "a",
 ];
 
-/// Whether a file's bytes are such a drawing.
-pub(crate) fn is_simple(bytes: &[u8]) -> bool {
+/// If a file's bytes are such a drawing: how many elements it has.
+pub(crate) fn elements(bytes: &[u8]) -> Option<usize> {
     if bytes.len() > LONGEST {
-        return false;
+        return None;
     }
-    let Ok(text) = std::str::from_utf8(bytes) else { return false };
+    let text = std::str::from_utf8(bytes).ok()?;
+    // A dash may be as short as one likes.
+    if text.contains("dasharray") {
+        return None;
+    }
     // Without declarations, which the reader refuses by default, there are no entities.
-    let Ok(document) = Document::parse(text) else { return false };
-    document.descendants().filter(Node::is_element).all(|node| {
+    let document = Document::parse(text).ok()?;
+    let elements = || document.descendants().filter(Node::is_element);
+    let simple = elements().all(|node| {
         let known = ELEMENTS.contains(&node.tag_name().name());
         // The descriptions' own elements are not drawn.
         let described = || {
@@ -49,7 +54,8 @@ pub(crate) fn is_simple(bytes: &[u8]) -> bool {
                 || node.tag_name().namespace() != Some("http://www.w3.org/2000/svg")
         };
         (known || described()) && node.ancestors().take(DEEPEST + 1).count() <= DEEPEST
-    })
+    });
+    simple.then(|| elements().count())
 }
 
 #[cfg(test)]
@@ -57,7 +63,8 @@ mod tests {
     use super::*;
 
     fn of(content: &str) -> bool {
-        is_simple(format!("<svg xmlns='http://www.w3.org/2000/svg' xmlns:x='urn:x'>{content}</svg>").as_bytes())
+        elements(format!("<svg xmlns='http://www.w3.org/2000/svg' xmlns:x='urn:x'>{content}</svg>").as_bytes())
+            .is_some()
     }
 
     #[test]
@@ -78,7 +85,11 @@ mod tests {
         assert!(of(&format!("{}{}", "<g>".repeat(60), "</g>".repeat(60))));
         assert!(!of(&format!("{}{}", "<g>".repeat(70), "</g>".repeat(70))));
         assert!(!of(&" ".repeat(300_000)));
-        assert!(!is_simple(b"<!DOCTYPE svg [<!ENTITY a 'b'>]><svg xmlns='http://www.w3.org/2000/svg'>&a;</svg>"));
-        assert!(!is_simple(b"\xff") && !is_simple(b"<svg") && !is_simple(b""));
+        assert!(!of("<g style='stroke-dasharray:1e-9'/>"));
+        let entity = "<!DOCTYPE svg [<!ENTITY a 'b'>]><svg xmlns='http://www.w3.org/2000/svg'>&a;</svg>";
+        for text in [entity.as_bytes(), b"\xff", b"<svg", b""] {
+            assert_eq!(elements(text), None);
+        }
+        assert_eq!(elements(b"<svg xmlns='http://www.w3.org/2000/svg'><g><path/></g></svg>"), Some(3));
     }
 }
