@@ -67,6 +67,7 @@ impl Model {
         let bytes = std::fs::read(path).map_err(|source| Error::Io { path: path.to_owned(), source })?;
         Self::decode(&bytes, format, path.parent()).map_err(|error| match error {
             Error::Format(text) => Error::Format(format!("{}: {text}", path.display())),
+            Error::Limit(text) => Error::Limit(format!("{}: {text}", path.display())),
             other => other,
         })
     }
