@@ -6,7 +6,7 @@ use fearless_simd::prelude::*;
 use super::cut::Cutter;
 use super::edge::{Edge, FixedPoint};
 use super::kernel::STRIP_SHIFT;
-use super::simple::Simplicity;
+use super::simple::{MOST_CORNERS, Simplicity};
 use crate::geom::{IntRect, Point};
 use crate::num::fixed;
 use crate::num::lanes::{max_f32, min_f32, truncate_f32};
@@ -175,6 +175,7 @@ impl EdgeBins {
         open_right: bool,
         prove: bool,
     ) {
+        let prove = prove && polygons.points().len() <= MOST_CORNERS;
         match extent(simd, polygons.points()) {
             Some([left, top, right, bottom])
                 if left >= clip.left as f32

@@ -17,6 +17,10 @@ const FARTHEST: i32 = 1 << 29;
 const LOOKS_PER_CORNER: usize = 32;
 const LOOKS: usize = 8192;
 
+/// Outlines of more corners or sides are not looked at: what crosses itself so often does so everywhere, and memory matters.
+pub(super) const MOST_CORNERS: usize = 1 << 20;
+const MOST_SIDES: usize = 1 << 16;
+
 /// A piece of an outline that goes all down or, walked backwards, up: an edge of it, from which the others are found downwards.
 #[derive(Clone, Copy, Debug)]
 struct Side {
@@ -54,7 +58,7 @@ impl Simplicity {
         self.sides.clear();
         let mut start = 0;
         for end in ends {
-            if !self.list_sides(points, start, *end) {
+            if !self.list_sides(points, start, *end) || self.sides.len() > MOST_SIDES {
                 return None;
             }
             start = *end;

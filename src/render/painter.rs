@@ -197,11 +197,15 @@ impl Painter<'_, '_, '_> {
     #[inline(always)]
     fn visible_run<S: Simd>(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
         if self.look.clip.is_none()
-            && self.look.blend_mode == BlendMode::SourceOver
             && let Source::Solid(color) = self.look.source
         {
-            self.fill_run(simd, start, end, rows, color);
-            return;
+            let whole = || rows.iter().take(self.rows).all(|coverage| matches!(coverage, 0 | 255));
+            match self.look.blend_mode {
+                BlendMode::SourceOver => return self.fill_run(simd, start, end, rows, color, color[3] == 255),
+                // What is covered whole is replaced, whatever the colour's alpha.
+                BlendMode::Source if whole() => return self.fill_run(simd, start, end, rows, color, true),
+                _ => {}
+            }
         }
         let mut mask = EMPTY_MASK;
         for (out, value) in mask.iter_mut().zip(rows) {
@@ -240,13 +244,36 @@ impl Painter<'_, '_, '_> {
         true
     }
 
-    /// Source-over of one colour along whole blocks of constant coverage.
+    /// Source-over of one colour along whole blocks of constant coverage. `replaces` says that nothing stays of what full
+    /// coverage covers.
     #[inline(never)]
-    fn fill_run<S: Simd>(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT], color: [u8; 4]) {
+    fn fill_run<S: Simd>(
+        &mut self,
+        simd: S,
+        start: usize,
+        end: usize,
+        rows: &[u8; BLOCK_HEIGHT],
+        color: [u8; 4],
+        replaces: bool,
+    ) {
+        if replaces && self.fill_strip(start, end, rows, color) {
+            return;
+        }
         simd.vectorize(
             #[inline(always)]
-            || self.fill_run_inner(simd, start, end, rows, color),
+            || self.fill_run_inner(simd, start, end, rows, color, replaces),
         );
+    }
+
+    /// Stores black, white or nothing over all rows of the strip at once, where they lie one after another: in so large a piece of
+    /// memory it takes a tenth to a quarter less. False if this is not the case.
+    fn fill_strip(&mut self, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT], [r, g, b, a]: [u8; 4]) -> bool {
+        if [g, b, a] != [r; 3] || rows.iter().take(self.rows).any(|coverage| *coverage != 255) {
+            return false;
+        }
+        let Some(strip) = self.surface.whole_strip(self.strip, start, end) else { return false };
+        strip.fill(r);
+        true
     }
 
     #[inline(always)]
@@ -257,6 +284,7 @@ impl Painter<'_, '_, '_> {
         end: usize,
         rows: &[u8; BLOCK_HEIGHT],
         color: [u8; 4],
+        replaces: bool,
     ) {
         for (row, &coverage) in rows.iter().enumerate().take(self.rows) {
             if coverage == 0 {
@@ -265,7 +293,7 @@ impl Painter<'_, '_, '_> {
             let row = self.strip * BLOCK_HEIGHT + row;
             let slice = self.surface.row(row, start, end);
             let (blocks, tail) = slice.as_chunks_mut::<ROW_BYTES>();
-            if coverage == 255 && color[3] == 255 {
+            if coverage == 255 && replaces {
                 // Whole blocks at a time: four bytes at a time would be stored one by one.
                 for pixels in blocks {
                     *pixels = self.pattern;

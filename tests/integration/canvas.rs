@@ -504,3 +504,41 @@ fn a_clip_cuts_a_shadow_but_not_what_casts_it() {
     });
     assert_eq!(text(&picture), [".BBB"]);
 }
+
+#[test]
+fn clearing_replaces_every_pixel_whatever_its_color() {
+    // The last is 128 in all four components.
+    let translucent = [Color::from_rgba8(200, 100, 50, 77), Color::from_rgba8(255, 255, 255, 128)];
+    for color in [Color::WHITE, Color::BLACK, Color::TRANSPARENT, Color::RED].into_iter().chain(translucent) {
+        for (width, height) in [(1, 1), (16, 8), (37, 21), (64, 40), (130, 9)] {
+            let mut canvas = Canvas::new(width, height).unwrap();
+            canvas.fill(Color::from_rgb8(1, 2, 3));
+            canvas.clear(color);
+            let cleared = canvas.into_pixmap();
+            let expected = color.premultiply();
+            assert!(cleared.data().as_chunks::<4>().0.iter().all(|pixel| *pixel == expected), "{color:?} {width}");
+            // Within a clip of whole pixels, and in a layer.
+            let mut canvas = Canvas::new(width, height).unwrap();
+            canvas.fill(Color::BLUE);
+            canvas.save();
+            canvas.clip_rect(Rect::from_xywh(0.0, 4.0, width as f32, 3.0), Antialias::None);
+            canvas.clear(color);
+            canvas.restore();
+            canvas.push_layer(1.0, BlendMode::Source);
+            canvas.fill_rect(Rect::from_xywh(0.0, 0.0, width as f32, 2.0), Color::RED);
+            canvas.clear(color);
+            canvas.pop_layer();
+            let layered = canvas.into_pixmap();
+            assert!(layered.data().as_chunks::<4>().0.iter().all(|pixel| *pixel == expected), "{color:?} {width}");
+            let mut canvas = Canvas::new(width, height).unwrap();
+            canvas.fill(Color::BLUE);
+            canvas.clip_rect(Rect::from_xywh(0.0, 4.0, width as f32, 3.0), Antialias::None);
+            canvas.clear(color);
+            let clipped = canvas.into_pixmap();
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                let expected = if (4..7).contains(&y) { expected } else { [0, 0, 255, 255] };
+                assert_eq!(clipped.pixel(x, y), Some(expected), "{color:?} {x} {y}");
+            }
+        }
+    }
+}
