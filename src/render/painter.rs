@@ -256,24 +256,10 @@ impl Painter<'_, '_, '_> {
         color: [u8; 4],
         replaces: bool,
     ) {
-        if replaces && self.fill_strip(start, end, rows, color) {
-            return;
-        }
         simd.vectorize(
             #[inline(always)]
             || self.fill_run_inner(simd, start, end, rows, color, replaces),
         );
-    }
-
-    /// Stores black, white or nothing over all rows of the strip at once, where they lie one after another: in so large a piece of
-    /// memory it takes a tenth to a quarter less. False if this is not the case.
-    fn fill_strip(&mut self, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT], [r, g, b, a]: [u8; 4]) -> bool {
-        if [g, b, a] != [r; 3] || rows.iter().take(self.rows).any(|coverage| *coverage != 255) {
-            return false;
-        }
-        let Some(strip) = self.surface.whole_strip(self.strip, start, end) else { return false };
-        strip.fill(r);
-        true
     }
 
     #[inline(always)]

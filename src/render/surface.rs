@@ -40,16 +40,6 @@ impl<'a> Surface<'a> {
         self.data.get_mut(base + from.min(to)..base + to).unwrap_or(&mut [])
     }
 
-    /// The rows of a strip as one piece, if blocks `start..end` are all of them and no other bytes lie between.
-    pub(super) fn whole_strip(&mut self, strip: usize, start: usize, end: usize) -> Option<&mut [u8]> {
-        let width = end.saturating_sub(self.first_block) * ROW_BYTES;
-        if start > self.first_block || width < self.row_bytes || self.stride != self.row_bytes {
-            return None;
-        }
-        let (from, rows) = (strip * BLOCK_HEIGHT * self.stride, self.strip_rows(strip));
-        self.data.get_mut(from..from + rows * self.stride)
-    }
-
     /// Applies `f` to each row's number in the strip and its 16 pixels in block `block`, for the rows that `wanted` says
     /// yes to. At the right side, where rows end inside the block, to a copy.
     #[inline(always)]
