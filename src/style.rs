@@ -18,8 +18,9 @@ pub enum Antialias {
     /// stands for the union. The default.
     #[default]
     Analytic,
-    /// As [`Antialias::Analytic`], and rows of pixels in which edges meet are resolved by the fill rule: within 4/255 of
-    /// the true area wherever outlines cross. Takes a few times as long where many do.
+    /// As [`Antialias::Analytic`], and pixels in which edges meet are resolved by the fill rule: within 4/255 of
+    /// the true area wherever outlines cross. Takes up to twice as long for outlines that do not, three to six times for those
+    /// that do all over.
     Exact,
     /// n × n samples a pixel on a regular grid, n in 1 ..= 16 (others are clamped). 4 is
     /// tiny-skia's own sampling.
