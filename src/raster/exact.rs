@@ -338,8 +338,8 @@ struct Window {
     changes: Vec<(i32, i32)>,
     sides: Sides,
     slabs: Slabs,
-    /// Of one scanline: where it is crossed, and by what winding.
-    crossings: Vec<(f32, i32)>,
+    /// Of one scanline: where it is crossed, a float's bits, and in the lower half by what winding.
+    crossings: Vec<u64>,
 }
 
 impl Window {
@@ -681,17 +681,23 @@ fn crowded_coverage(window: &mut Window, column: i32, rule: FillRule) -> i32 {
         crossings.clear();
         crossings.extend(parts.iter().filter(|part| part.y0 <= y && y < part.y1).map(|part| {
             let x = part.x + ((part.base - column) * fixed::ONE) as f32 + part.slope * y as f32;
-            (x.clamp(0.0, 256.0), part.winding)
+            // What is not below 0 has the order of its bits.
+            let x = if x > 0.0 { x } else { 0.0 };
+            u64::from((if x < 256.0 { x } else { 256.0 }).to_bits()) << 32 | u64::from(part.winding as u32)
         }));
-        crossings.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        crossings.sort_unstable();
         let mut around = *winding + changes.iter().map(|(from, sum)| if *from <= y { *sum } else { 0 }).sum::<i32>();
         let mut at = 0.0;
-        for (x, winding) in crossings.iter().chain(std::iter::once(&(256.0, 0))) {
+        for crossing in crossings.iter() {
+            let (x, winding) = (f32::from_bits((crossing >> 32) as u32), *crossing as u32 as i32);
             if inside(around, rule) {
                 area += x - at;
             }
-            around = around.wrapping_add(*winding);
-            at = *x;
+            around = around.wrapping_add(winding);
+            at = x;
+        }
+        if inside(around, rule) {
+            area += 256.0 - at;
         }
     }
     (area * (FULL as f32 / (256 * SCANLINES) as f32) + 0.5) as i32
