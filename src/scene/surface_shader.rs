@@ -221,6 +221,10 @@ impl SurfaceShader<'_> {
 impl FragmentShader for SurfaceShader<'_> {
     const DISCARDS: bool = true;
 
+    fn may_discard(&self) -> bool {
+        self.look == Look::Materials && matches!(self.material.alpha, AlphaMode::Mask(_))
+    }
+
     #[inline(always)]
     fn shade<S: Simd>(&self, f: &Fragments<'_, S>) -> Shade<S> {
         let simd = f.simd();

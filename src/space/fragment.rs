@@ -18,6 +18,12 @@ pub trait FragmentShader: Sync {
     /// Whether [`Shade::keep`] may drop pixels. Tests then run after the shader instead of before.
     const DISCARDS: bool = false;
 
+    /// Whether it may do so in this draw, where that depends on more than the type; asked once a draw. The default is
+    /// [`DISCARDS`](Self::DISCARDS).
+    fn may_discard(&self) -> bool {
+        Self::DISCARDS
+    }
+
     /// The colours of eight pixels that one triangle covers in part or whole. Lanes outside
     /// [`Fragments::mask`] are of no consequence, but must not stop the program.
     fn shade<S: Simd>(&self, fragments: &Fragments<'_, S>) -> Shade<S>;
@@ -35,7 +41,7 @@ pub trait FragmentShader: Sync {
 pub struct Shade<S: Simd> {
     /// Premultiplied RGBA8, red in the lowest byte.
     pub color: u32x8<S>,
-    /// The pixels to keep, bit i for pixel i; heeded only if [`FragmentShader::DISCARDS`].
+    /// The pixels to keep, bit i for pixel i; heeded only if [`FragmentShader::may_discard`].
     pub keep: u8,
 }
 

@@ -135,7 +135,7 @@ impl Pipeline {
             prepared.snap,
             prepared.threads,
         );
-        let output = self.output::<F>(&prepared.tests, target);
+        let output = self.output(fragment, &prepared.tests, target);
         let mut counters = Counters { vertices: primitives.vertices.len() as u64, ..Counters::default() };
         let level = prepared.level;
         let flush = |batch: &Batch, vertices: Vertices<'_>, band: &mut BandMut<'_>, counters: &mut Counters| {
@@ -190,16 +190,18 @@ impl Pipeline {
         total.into_inner().unwrap_or_default()
     }
 
-    fn output<F: FragmentShader>(&self, tests: &Tests, target: &Target) -> Output {
+    fn output<F: FragmentShader>(&self, fragment: &F, tests: &Tests, target: &Target) -> Output {
         let mask = self.state.color_mask.map(|write| if write { 255 } else { 0 });
-        let early = !F::DISCARDS && self.state.alpha_test.is_none();
+        let discards = fragment.may_discard();
+        let early = !discards && self.state.alpha_test.is_none();
         let color_mask = u32::from_le_bytes(mask);
         let plain = early
             && color_mask == !0
             && self.state.blend == Blend::Replace
             && target.samples.coverage() == 1
             && target.attachments.is_empty();
-        Output { tests: *tests, early, alpha_test: self.state.alpha_test, blend: self.state.blend, color_mask, plain }
+        let (alpha_test, blend) = (self.state.alpha_test, self.state.blend);
+        Output { tests: *tests, discards, early, alpha_test, blend, color_mask, plain }
     }
 
     /// Which primitives each band of rows lists, and how many rows a band has: what [`Pipeline::draw`] makes of the primitives with
@@ -286,7 +288,7 @@ impl Pipeline {
         let transform = &prepared.binning.transform;
         let shaded = shade_vertices(vertex, primitives.vertices, transform, depth_clamp, prepared.snap, 1);
         counters.vertices = primitives.vertices.len() as u64;
-        let output = Output { early: true, ..pipeline.output::<F>(&prepared.tests, target) };
+        let output = Output { early: true, ..pipeline.output(fragment, &prepared.tests, target) };
         let (tiles_x, level) = (target.tiles_x, prepared.level);
         let mut bands = target.bands(prepared.band_tiles);
         let Some(band) = bands.first_mut() else { return counters };

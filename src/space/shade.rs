@@ -17,6 +17,8 @@ use crate::num::level::{SimdLevel, dispatch};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Output {
     pub(crate) tests: Tests,
+    /// Whether the shader may drop pixels.
+    pub(crate) discards: bool,
     pub(crate) early: bool,
     pub(crate) alpha_test: Option<(Compare, u8)>,
     pub(crate) blend: Blend,
@@ -94,7 +96,7 @@ fn shade_batch<S: Simd, F: FragmentShader>(
         let fragments = Fragments::new(simd, &planes, group.x, group.y, pixels);
         counters.fragments += u64::from(pixels.count_ones());
         let shade = shader.shade(&fragments);
-        let mut keep = if F::DISCARDS { shade.keep } else { !0 };
+        let mut keep = if output.discards { shade.keep } else { !0 };
         if let Some((compare, reference)) = output.alpha_test {
             for (i, color) in shade.color.to_array().into_iter().enumerate() {
                 if !compare.passes((color >> 24) as u8, reference) {

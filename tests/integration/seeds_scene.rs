@@ -682,3 +682,24 @@ fn every_shading_and_antialiasing_is_the_same_at_every_level_and_thread_count() 
         }
     }
 }
+
+#[test]
+fn what_is_hidden_is_not_shaded_unless_pixels_may_be_dropped() {
+    // Three walls one behind the other, each of which fills the picture.
+    let wall = |z: f32, alpha: AlphaMode| {
+        let material = Material { alpha, color: [0.5, 0.7, 0.9, 1.0], ..Material::default() };
+        (Mesh::cuboid([-9.0, -9.0, z], [9.0, 9.0, z + 0.1], 0), material, Mat4::IDENTITY)
+    };
+    let camera = Camera::look_at([0.0, 0.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0]);
+    let shaded = |alpha: AlphaMode, look: Look| {
+        let scene = scene_of([1.0, 0.0, -1.0].map(|z| wall(z, alpha)).into());
+        let settings = SceneSettings { look, ..SceneSettings::default() };
+        let (picture, stats) = render_picture(&scene, &camera, 40, 30, &settings).unwrap();
+        assert!(picture.data().as_chunks::<4>().0.iter().all(|pixel| pixel[3] == 255));
+        stats.counters.fragments
+    };
+    assert_eq!(shaded(AlphaMode::Opaque, Look::Materials), 40 * 30);
+    // What may be cut out does not hide before it is known where.
+    assert!(shaded(AlphaMode::Mask(0.5), Look::Materials) > 40 * 30);
+    assert_eq!(shaded(AlphaMode::Mask(0.5), Look::Normals), 40 * 30);
+}
