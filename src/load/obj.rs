@@ -20,7 +20,8 @@ const MATERIAL: usize = 640;
 
 pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Model> {
     let (budget, warnings) = (RefCell::new(Budget::new(bytes.len())), RefCell::new(Vec::new()));
-    let meshes = bytes.split(|byte| *byte == b'\n').filter(|line| STARTS.iter().any(|start| line.starts_with(start)));
+    let lines = bytes.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii_start);
+    let meshes = lines.filter(|line| STARTS.iter().any(|start| line.starts_with(start)));
     budget.borrow_mut().take_each(meshes.count(), MESH, "its objects")?;
     let read_once = RefCell::new(HashSet::new());
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ..tobj::LoadOptions::default() };

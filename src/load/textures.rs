@@ -11,7 +11,6 @@ use crate::space::{Sampler, Texture};
 use crate::surface::Pixmap;
 
 /// Where a picture is.
-#[derive(Clone)]
 pub(super) enum Place<'a> {
     /// Bytes of the model.
     Bytes(&'a [u8]),

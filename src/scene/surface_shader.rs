@@ -219,8 +219,6 @@ impl SurfaceShader<'_> {
 }
 
 impl FragmentShader for SurfaceShader<'_> {
-    const DISCARDS: bool = true;
-
     fn may_discard(&self) -> bool {
         self.look == Look::Materials && matches!(self.material.alpha, AlphaMode::Mask(_))
     }

@@ -15,13 +15,10 @@ use crate::num::lanes::{each, max_i32, truncate_f32};
 /// it `#[inline(always)]`, and use `+ − × ÷ √`, comparisons and selections alone if the same bytes are wanted at every level (`mul_add`,
 /// approximate reciprocals, `min` and `max` of floats are not the same). For one pixel at a time there is [`pixel_fn`].
 pub trait FragmentShader: Sync {
-    /// Whether [`Shade::keep`] may drop pixels. Tests then run after the shader instead of before.
-    const DISCARDS: bool = false;
-
-    /// Whether it may do so in this draw, where that depends on more than the type; asked once a draw. The default is
-    /// [`DISCARDS`](Self::DISCARDS).
+    /// Whether [`Shade::keep`] may drop pixels in this draw; asked once a draw. Tests then run after the shader instead of
+    /// before. The default is false.
     fn may_discard(&self) -> bool {
-        Self::DISCARDS
+        false
     }
 
     /// The colours of eight pixels that one triangle covers in part or whole. Lanes outside
@@ -331,7 +328,9 @@ pub fn pixel_fn<F: Fn(&Fragment) -> Option<[f32; 4]> + Sync>(varyings: usize, sh
 }
 
 impl<F: Fn(&Fragment) -> Option<[f32; 4]> + Sync> FragmentShader for PixelFn<F> {
-    const DISCARDS: bool = true;
+    fn may_discard(&self) -> bool {
+        true
+    }
 
     #[inline(always)]
     fn shade<S: Simd>(&self, fragments: &Fragments<'_, S>) -> Shade<S> {

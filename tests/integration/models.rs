@@ -381,6 +381,10 @@ fn memory_is_bounded_by_the_files_size() {
             triangle(|text| text.replace(r#""nodes":[{"mesh":0}"#, &format!(r#""nodes":[{{"mesh":0}}{nodes}"#))),
         ),
         ("objects.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{}", "o a\nf 1 2 3\n".repeat(400_000)).into_bytes()),
+        (
+            "indented_objects.obj",
+            format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{}", " o a\nf 1 2 3\n".repeat(400_000)).into_bytes(),
+        ),
         ("materials.obj", format!("{}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "mtllib a.mtl\n".repeat(20)).into_bytes()),
     ];
     for i in 0..8 {
