@@ -1,8 +1,8 @@
 //! Gaussian blur.
 
 use super::image::{Image, Work, grown};
-use super::lines::{Columns, Lanes, NEIGHBOURS, copy};
-use super::source::Parts;
+use super::lines::{COLUMNS, Columns, Lanes, copy};
+use super::source::{PART, Parts, bands, strips};
 use crate::error::Result;
 use crate::geom::IntRect;
 use crate::num::level::dispatch;
@@ -133,9 +133,9 @@ struct Room {
     part: usize,
 }
 
-/// 2,000 rows of 3,000 columns fit. Bands that are low beside the blur's reach have its surroundings drawn again and again:
+/// Bands that are low beside the blur's reach have its surroundings drawn again and again:
 /// a deviation of 1,000 at 2000² takes a quarter more time than with 32 MiB, for which a blur inside a blur has no room.
-const ROOM: Room = Room { columns: 24 << 20, part: 12 << 20 };
+const ROOM: Room = Room { columns: COLUMNS, part: PART };
 
 /// Blurs a picture; the answer holds what of it lies in `area`.
 ///
@@ -183,28 +183,6 @@ fn blur_within(
         });
     }
     Ok(out)
-}
-
-/// `area` in bands as high as each other, of about so many rows at most.
-fn bands(area: IntRect, rows: usize) -> impl Iterator<Item = IntRect> {
-    let height = area.height() as usize;
-    // Whole groups of lines.
-    let count = height.div_ceil(rows.max(NEIGHBOURS));
-    let rows = height.div_ceil(count.max(1)).next_multiple_of(NEIGHBOURS);
-    (0..height.div_ceil(rows.max(1))).map(move |band| {
-        let top = area.top + (band * rows) as i32;
-        IntRect { top, bottom: area.bottom.min(top.saturating_add(rows as i32)), ..area }
-    })
-}
-
-/// `area` in strips of columns, whole blocks, each a picture of about so many bytes at most.
-fn strips(area: IntRect, bytes: usize) -> impl Iterator<Item = IntRect> {
-    let most = bytes / (area.height().max(1) as usize * 4);
-    let columns = (most / NEIGHBOURS * NEIGHBOURS).clamp(NEIGHBOURS, 1 << 20);
-    (0..(area.width() as usize).div_ceil(columns)).map(move |strip| {
-        let left = area.left + (strip * columns) as i32;
-        IntRect { left, right: area.right.min(left.saturating_add(columns as i32)), ..area }
-    })
 }
 
 /// Blurs a picture by the same deviation in both directions, in pixels; the answer holds what of it lies in `area`.
@@ -491,17 +469,6 @@ mod tests {
     }
 
     const LARGE: IntRect = IntRect::from_ltrb(-5000, -5000, 5000, 5000);
-
-    #[test]
-    fn bands_and_strips_are_all_there_is() {
-        let area = IntRect::from_ltrb(-7, 5, 93, 105);
-        let found: Vec<_> = bands(area, 40).map(|band| (band.top, band.bottom)).collect();
-        assert_eq!(found, [(5, 53), (53, 101), (101, 105)]);
-        let found: Vec<_> = strips(area, 100 * 4 * 50).map(|strip| (strip.left, strip.right)).collect();
-        assert_eq!(found, [(-7, 41), (41, 89), (89, 93)]);
-        assert_eq!((bands(area, 1000).collect(), strips(area, usize::MAX).collect()), (vec![area], vec![area]));
-        assert_eq!(bands(IntRect::EMPTY, 0).count() + strips(IntRect::EMPTY, 0).count(), 0);
-    }
 
     #[test]
     fn with_a_region_boxes_are_cut_off_in_between() {

@@ -82,7 +82,7 @@ impl ColorMatrix {
 
 /// The matrix applied to a picture, in `area`.
 pub(super) fn color_matrix(image: Image, area: IntRect, matrix: &ColorMatrix, work: Work) -> Result<Image> {
-    let mut image = if matrix.fills() { image.crop(area)? } else { image.within(area)? };
+    let mut image = if matrix.fills() { image.with_bounds(area)? } else { image.within(area) };
     image.map_straight(work, |pixel| matrix.apply(pixel));
     Ok(image)
 }

@@ -72,7 +72,7 @@ pub(super) fn component_transfer(
     let tables = functions.each_ref().map(TransferFunction::table);
     // Whether transparent pixels become visible.
     let fills = tables[3][0] > 0;
-    let mut image = if fills { image.crop(area)? } else { image.within(area)? };
+    let mut image = if fills { image.with_bounds(area)? } else { image.within(area) };
     image.map_straight(work, |pixel| std::array::from_fn(|c| tables[c][usize::from(pixel[c])]));
     Ok(image)
 }

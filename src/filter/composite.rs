@@ -1,5 +1,7 @@
 //! Two pictures into one: blend modes, Porter–Duff operators, arithmetic.
 
+use std::sync::Arc;
+
 use super::image::{Image, Work, union};
 use crate::blend::{BlendMode, composite_block};
 use crate::error::Result;
@@ -65,7 +67,7 @@ const NO_PIXELS: PixelBlock = [[0; BLOCK_WIDTH * 4]; BLOCK_HEIGHT];
 /// One picture over another by a blend mode, in `area`.
 pub(super) fn blend(top: &Image, bottom: Image, area: IntRect, mode: BlendMode, work: Work) -> Result<Image> {
     let area = union(top.bounds(), bottom.bounds()).intersect(area);
-    let mut out = if bottom.bounds() == area { bottom } else { bottom.crop(area)? };
+    let mut out = bottom.with_bounds(area)?;
     // Outside of the upper picture, what is below stays, or goes with it.
     let touched = match mode {
         BlendMode::SourceIn
@@ -76,8 +78,16 @@ pub(super) fn blend(top: &Image, bottom: Image, area: IntRect, mode: BlendMode, 
         BlendMode::DestinationAtop | BlendMode::Modulate => area,
         _ => top.bounds().intersect(area),
     };
+    blend_onto(&mut out, top, touched, mode, work);
+    Ok(out)
+}
+
+/// Blends one picture onto another, where that one's pixels lie in `touched`.
+pub(super) fn blend_onto(out: &mut Image, top: &Image, touched: IntRect, mode: BlendMode, work: Work) {
+    let area = out.bounds();
+    let touched = touched.intersect(area);
     if touched.is_empty() {
-        return Ok(out);
+        return;
     }
     let width = area.width() as usize;
     let first = touched.left.abs_diff(area.left) as usize;
@@ -110,7 +120,6 @@ pub(super) fn blend(top: &Image, bottom: Image, area: IntRect, mode: BlendMode, 
             }
         });
     });
-    Ok(out)
 }
 
 /// Copies pixels into a block's row.
@@ -122,10 +131,11 @@ fn fill(row: &mut [u8; BLOCK_WIDTH * 4], start: usize, pixels: &[[u8; 4]]) {
 }
 
 /// Pictures over each other, the lowest first, in `area`.
-pub(super) fn merge(inputs: impl Iterator<Item = Result<Image>>, area: IntRect, work: Work) -> Result<Image> {
-    let mut out = Image::empty();
+pub(super) fn merge(mut inputs: impl Iterator<Item = Result<Arc<Image>>>, area: IntRect, work: Work) -> Result<Image> {
+    let Some(lowest) = inputs.next() else { return Ok(Image::empty()) };
+    let mut out = Arc::unwrap_or_clone(lowest?).within(area);
     for input in inputs {
-        out = blend(&input?, out, area, BlendMode::SourceOver, work)?;
+        out = blend(&*input?, out, area, BlendMode::SourceOver, work)?;
     }
     Ok(out)
 }
@@ -136,7 +146,7 @@ fn arithmetic(top: &Image, bottom: Image, area: IntRect, k: [f32; 4], work: Work
         return Ok(Image::empty());
     }
     let area = if k4 > 0.0 { area } else { union(top.bounds(), bottom.bounds()).intersect(area) };
-    let mut out = bottom.crop(area)?;
+    let mut out = bottom.with_bounds(area)?;
     out.for_rows(work, |y, row| {
         let (left, part) = top.part(y, area.left, area.right);
         let before = left.abs_diff(area.left) as usize;

@@ -1,6 +1,7 @@
 //! Weighted sums of a pixel's neighbourhood.
 
 use super::image::{Image, Work, grown};
+use super::source::bands_of_parts;
 use crate::color::{demultiply_u8, unit};
 use crate::error::{Error, Result};
 use crate::geom::IntRect;
@@ -90,31 +91,32 @@ pub(super) fn convolve(
         )));
     }
     let (before, after) = matrix.reach();
-    // All that windows reach, made up where it is beyond the region.
-    let window = grown(area, before, after);
-    let mut source = around(image, window, region, matrix.edge_mode)?;
-    if matrix.preserve_alpha {
-        source.for_pixels(work, |pixels| {
-            for pixel in pixels {
-                *pixel = demultiply_u8(*pixel);
+    let mut out = Image::new(area)?;
+    let width = area.width() as usize;
+    // All that windows reach is a picture too, made up where it is beyond the region: of some rows at a time.
+    for band in bands_of_parts(area, grown(area, before, after).width()) {
+        let mut source = around(image, grown(band, before, after), region, matrix.edge_mode)?;
+        if matrix.preserve_alpha {
+            source.for_pixels(work, |pixels| {
+                for pixel in pixels {
+                    *pixel = demultiply_u8(*pixel);
+                }
+            });
+        }
+        out.for_rows_of(band, work, |y, row| {
+            let mut sums: Sums = vec![0.0; width * 4];
+            dispatch!(work.level, simd => {
+                let _ = simd;
+                sum_row(matrix, &source, y - before.1, &mut sums);
+            });
+            let (_, own) = image.part(y, area.left, area.right);
+            let first = image.bounds().left.clamp(area.left, area.right).abs_diff(area.left) as usize;
+            for (x, (pixel, sums)) in row.iter_mut().zip(sums.as_chunks::<4>().0).enumerate() {
+                let alpha = x.checked_sub(first).and_then(|x| own.get(x)).map_or(0, |pixel| pixel[3]);
+                *pixel = finish(matrix, *sums, alpha);
             }
         });
     }
-    let mut out = Image::new(area)?;
-    let width = area.width() as usize;
-    out.for_rows(work, |y, row| {
-        let mut sums: Sums = vec![0.0; width * 4];
-        dispatch!(work.level, simd => {
-            let _ = simd;
-            sum_row(matrix, &source, y - before.1, &mut sums);
-        });
-        let (_, own) = image.part(y, area.left, area.right);
-        let first = image.bounds().left.clamp(area.left, area.right).abs_diff(area.left) as usize;
-        for (x, (pixel, sums)) in row.iter_mut().zip(sums.as_chunks::<4>().0).enumerate() {
-            let alpha = x.checked_sub(first).and_then(|x| own.get(x)).map_or(0, |pixel| pixel[3]);
-            *pixel = finish(matrix, *sums, alpha);
-        }
-    });
     Ok(out)
 }
 

@@ -1,5 +1,7 @@
 //! Pixels moved by another picture's colours.
 
+use std::sync::Arc;
+
 use super::image::{Image, Work};
 use crate::color::demultiply_u8;
 use crate::error::Result;
@@ -44,13 +46,13 @@ pub struct DisplacementMap {
 /// The picture displaced, in `area`; `scale` is in pixels, across and down.
 pub(super) fn displace(
     image: &Image,
-    map: &Image,
+    map: Arc<Image>,
     area: IntRect,
     displacement: &DisplacementMap,
     scale: (f32, f32),
     work: Work,
 ) -> Result<Image> {
-    let mut out = map.crop(area)?;
+    let mut out = Arc::unwrap_or_clone(map).with_bounds(area)?;
     out.for_rows(work, |y, row| {
         for (x, pixel) in (area.left..).zip(row) {
             let by = demultiply_u8(*pixel);
@@ -82,7 +84,7 @@ mod tests {
         map.pixels_mut()[6] = [100, 50, 0, 100];
         let by = DisplacementMap { scale: 2.0, x_channel: Channel::Red, y_channel: Channel::Green };
         let area = IntRect::from_ltrb(0, 0, 4, 2);
-        let out = displace(&source, &map, area, &by, (2.0, 2.0), WORK).unwrap();
+        let out = displace(&source, map.into(), area, &by, (2.0, 2.0), WORK).unwrap();
         assert_eq!(out, image(0, 0, &["234.", "628."]));
     }
 }

@@ -1,10 +1,9 @@
 //! The picture over a blurred, tinted and moved copy of its alpha.
 
 use super::blur::{Blur, blur};
-use super::composite;
-use super::image::{Image, Work, moved};
-use super::offset::offset;
-use super::source::Parts;
+use super::composite::blend_onto;
+use super::image::{Image, Work, moved, union};
+use super::source::{Parts, bands_of_parts};
 use crate::blend::BlendMode;
 use crate::color::Color;
 use crate::error::Result;
@@ -31,8 +30,15 @@ pub(super) fn drop_shadow(
     let inside = moved(area, -dx, -dy).intersect(region.unwrap_or(EVERYTHING));
     let mut cast = blur(image, inside, region, &shadow.across, &shadow.down, work)?;
     tint(&mut cast, shadow.color, work);
-    let cast = offset(&cast, area, dx, dy)?;
-    composite::blend(&*image.part(area)?, cast, area, BlendMode::SourceOver, work)
+    let cast = cast.moved(dx, dy);
+    let touched = image.bounds().intersect(area);
+    let all = union(cast.bounds(), touched);
+    let mut out = cast.with_bounds(all)?;
+    // What is drawn part by part is drawn for the second time here: else it would be a picture while the shadow is cast.
+    for band in bands_of_parts(touched, touched.width()) {
+        blend_onto(&mut out, &*image.part(band)?, band, BlendMode::SourceOver, work);
+    }
+    Ok(out)
 }
 
 const EVERYTHING: IntRect = IntRect::from_ltrb(i32::MIN, i32::MIN, i32::MAX, i32::MAX);

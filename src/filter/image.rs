@@ -78,14 +78,21 @@ impl Image {
 
     /// Calls `f` with the number of each row and its pixels, on several threads where that pays.
     pub(super) fn for_rows(&mut self, work: Work, f: impl Fn(i32, &mut [[u8; 4]]) + Sync) {
+        self.for_rows_of(self.bounds, work, f);
+    }
+
+    /// The same with the rows of `band` alone, which the picture has.
+    pub(super) fn for_rows_of(&mut self, band: IntRect, work: Work, f: impl Fn(i32, &mut [[u8; 4]]) + Sync) {
         let (bounds, width) = (self.bounds, self.bounds.width() as usize);
         if width == 0 {
             return;
         }
         let rows = PIXELS_PER_JOB.div_ceil(width);
-        let jobs: Vec<_> = self.pixels_mut().chunks_mut(width * rows).enumerate().collect();
+        let first = band.top.abs_diff(bounds.top) as usize * width;
+        let pixels = self.pixels_mut().get_mut(first..first + band.height() as usize * width).unwrap_or(&mut []);
+        let jobs: Vec<_> = pixels.chunks_mut(width * rows).enumerate().collect();
         pool::for_each(work.threads, jobs, |(job, pixels)| {
-            let first = bounds.top + (job * rows) as i32;
+            let first = band.top + (job * rows) as i32;
             for (y, row) in (first..).zip(pixels.chunks_mut(width)) {
                 f(y, row);
             }
@@ -118,9 +125,38 @@ impl Image {
         }
     }
 
-    /// Without what lies outside `area`; the same picture if that is nothing.
-    pub(super) fn within(self, area: IntRect) -> Result<Self> {
-        if area.contains(self.bounds) { Ok(self) } else { self.crop(self.bounds.intersect(area)) }
+    /// Without what lies outside `area`. It takes no memory: rows move up within the picture's own.
+    pub(super) fn within(mut self, area: IntRect) -> Self {
+        let (from, to) = (self.bounds, self.bounds.intersect(area));
+        if to == from {
+            return self;
+        }
+        if to.is_empty() {
+            return Self::empty();
+        }
+        let (width, stride) = (to.width() as usize, from.width() as usize);
+        let first = to.top.abs_diff(from.top) as usize * stride + to.left.abs_diff(from.left) as usize;
+        let rows = to.height() as usize;
+        for row in 0..rows {
+            let (source, target) = (first + row * stride, row * width);
+            if let Some(pixels) = self.pixels_mut().get_mut(target..source + width) {
+                pixels.copy_within(source - target.., 0);
+            }
+        }
+        self.data.truncate(rows * width * 4);
+        self.data.shrink_to_fit();
+        self.bounds = to;
+        self
+    }
+
+    /// The same picture with exactly the pixels of `bounds`; in its own memory, if it has these.
+    pub(super) fn with_bounds(self, bounds: IntRect) -> Result<Self> {
+        if self.bounds.contains(bounds) { Ok(self.within(bounds)) } else { self.crop(bounds) }
+    }
+
+    /// Moved by (dx, dy).
+    pub(super) fn moved(self, dx: i32, dy: i32) -> Self {
+        Self { bounds: moved(self.bounds, dx, dy), ..self }
     }
 
     /// Applies a function of straight pixels to each pixel.
@@ -220,6 +256,23 @@ pub(super) mod tests {
         assert_eq!(out, image(1, 4, &[".34", "..."]));
         assert_eq!(out.row(3), &[] as &[[u8; 4]]);
         assert_eq!(out.row(6), &[] as &[[u8; 4]]);
+    }
+
+    #[test]
+    fn cutting_in_place_is_cropping() {
+        let source = noise(IntRect::from_ltrb(-3, 5, 9, 14), 4);
+        for area in [
+            IntRect::from_ltrb(-3, 5, 9, 14),
+            IntRect::from_ltrb(-20, -20, 50, 50),
+            IntRect::from_ltrb(0, 6, 4, 9),
+            IntRect::from_ltrb(-3, 13, 50, 14),
+            IntRect::from_ltrb(8, 0, 9, 6),
+            IntRect::from_ltrb(20, 20, 30, 30),
+        ] {
+            let inside = area.intersect(source.bounds());
+            assert_eq!(source.clone().within(area), source.crop(inside).unwrap(), "{area:?}");
+            assert_eq!(source.clone().with_bounds(area).unwrap(), source.crop(area).unwrap(), "{area:?}");
+        }
     }
 
     #[test]

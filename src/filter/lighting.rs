@@ -108,24 +108,23 @@ fn shade(
     f: impl Fn([f32; 3], [f32; 3]) -> [u8; 4] + Sync,
 ) -> Result<Image> {
     let window = grown(area, (1, 1), (1, 1)).intersect(region);
-    let source = image.crop(window)?;
     let height = if height.is_finite() { height / 255.0 } else { 0.0 };
     let mut out = Image::new(area)?;
     out.for_rows(work, |y, row| {
         let (top, bottom) = ((y - 1).max(region.top), (y + 1).min(region.bottom - 1));
-        let [above, own, below] = [top, y, bottom].map(|y| source.row(y));
+        let [above, own, below] = [top, y, bottom].map(|y| image.part(y, window.left, window.right));
         // A row at the region's side has no neighbour there, and no weight.
         let (weight_above, weight_below) = (if top < y { 1.0 } else { 0.0 }, if bottom > y { 1.0 } else { 0.0 });
         let factor_x = |distance: i32| 2.0 / ((2.0 + weight_above + weight_below) * distance as f32);
         let down = (bottom - top) as f32;
         for (x, pixel) in (area.left..).zip(row) {
             let (left, right) = ((x - 1).max(region.left), (x + 1).min(region.right - 1));
-            let at = |row: &[[u8; 4]], x: i32| {
-                usize::try_from(x - window.left).ok().and_then(|x| row.get(x)).map_or(0.0, |pixel| f32::from(pixel[3]))
+            let at = |(first, row): (i32, &[[u8; 4]]), x: i32| {
+                usize::try_from(x - first).ok().and_then(|x| row.get(x)).map_or(0.0, |pixel| f32::from(pixel[3]))
             };
             let side = |x: i32| at(above, x) * weight_above + 2.0 * at(own, x) + at(below, x) * weight_below;
             let (weight_left, weight_right) = (if left < x { 1.0 } else { 0.0 }, if right > x { 1.0 } else { 0.0 });
-            let end = |row: &[[u8; 4]]| at(row, left) * weight_left + 2.0 * at(row, x) + at(row, right) * weight_right;
+            let end = |row| at(row, left) * weight_left + 2.0 * at(row, x) + at(row, right) * weight_right;
             let slope_x = if left < right { (side(right) - side(left)) * factor_x(right - left) } else { 0.0 };
             let weights = (2.0 + weight_left + weight_right) * down;
             let slope_y = if top < bottom { (end(below) - end(above)) * 2.0 / weights } else { 0.0 };

@@ -1,8 +1,7 @@
 //! Sixteen rows or columns at a time: what works along one direction is written once, and sees neither.
 //!
 //! A line's position holds the RGBA of sixteen neighbours, 64 bytes, so that the work along it goes in vectors.
-//! [`down`] takes columns out of a picture, [`across`] takes rows out of what that gives. Who has the picture in parts, or
-//! wants the rows in parts, calls [`Columns::fill`] and [`Columns::write`].
+//! [`Columns::fill`] takes columns out of a picture, [`Columns::write`] takes rows out of what that gives.
 
 use crate::error::Result;
 use crate::geom::IntRect;
@@ -17,39 +16,13 @@ const BYTES: usize = NEIGHBOURS * 4;
 /// One position of sixteen lines.
 pub(super) type Lanes = [u8; BYTES];
 
+/// Bytes of what is worked on downwards only: 2,000 rows of 3,000 columns fit. Of more, the rows are worked on in bands.
+pub(super) const COLUMNS: usize = 24 << 20;
+
 /// A picture in blocks of sixteen columns, rows top down in each; the last block is filled up with transparency.
 pub(super) struct Columns {
     bounds: IntRect,
     data: Vec<u8>,
-}
-
-/// Works along the columns of `image`: `f(source, offset, target)` is called for each sixteen of them, with the pixels of the
-/// image and those asked for, rows `top..bottom`; `target[i]` lies where `source[i + offset]` does.
-pub(super) fn down(
-    image: &Image,
-    top: i32,
-    bottom: i32,
-    work: Work,
-    f: impl Fn(&[Lanes], isize, &mut [Lanes]) + Sync,
-) -> Result<Columns> {
-    let from = image.bounds();
-    let bounds = if from.is_empty() { from } else { IntRect { top, bottom, ..from } };
-    let mut columns = Columns::new(bounds)?;
-    columns.fill(image, from, work, f);
-    Ok(columns)
-}
-
-/// Works along rows as [`down`] does along columns; the answer has the columns `left..right`.
-pub(super) fn across(
-    columns: &Columns,
-    left: i32,
-    right: i32,
-    work: Work,
-    f: impl Fn(&[Lanes], isize, &mut [Lanes]) + Sync,
-) -> Result<Image> {
-    let mut image = Image::new(IntRect { left, right, ..columns.bounds })?;
-    columns.write(&mut image, work, f);
-    Ok(image)
 }
 
 impl Columns {
@@ -66,7 +39,9 @@ impl Columns {
         (width as usize).div_ceil(NEIGHBOURS) * BYTES
     }
 
-    /// Works along the columns `from.left..from.right`, whole blocks of these, with the pixels that `image` has in `from`.
+    /// Works along the columns `from.left..from.right`, whole blocks of these: `f(source, offset, target)` is called for each
+    /// sixteen of them, with the pixels that `image` has in `from` and those asked for, all rows; `target[i]` lies where
+    /// `source[i + offset]` does.
     pub(super) fn fill(
         &mut self,
         image: &Image,
@@ -103,7 +78,8 @@ impl Columns {
         });
     }
 
-    /// Works along the rows, and writes what comes of it to the picture, which has them.
+    /// Works along the rows as [`fill`](Self::fill) does along columns, and writes what comes of it to the picture, which has
+    /// these rows.
     pub(super) fn write(&self, image: &mut Image, work: Work, f: impl Fn(&[Lanes], isize, &mut [Lanes]) + Sync) {
         let (from, to) = (self.bounds, image.bounds());
         let width = to.width() as usize;
@@ -163,8 +139,10 @@ mod tests {
             IntRect::from_ltrb(-40, 8, 12, 60),
             IntRect::from_ltrb(100, 100, 102, 103),
         ] {
-            let columns = down(&source, area.top, area.bottom, WORK, copy).unwrap();
-            let out = across(&columns, area.left, area.right, WORK, copy).unwrap();
+            let mut columns = Columns::new(IntRect { top: area.top, bottom: area.bottom, ..source.bounds() }).unwrap();
+            columns.fill(&source, source.bounds(), WORK, copy);
+            let mut out = Image::new(area).unwrap();
+            columns.write(&mut out, WORK, copy);
             assert_eq!(out, source.crop(area).unwrap(), "{area:?}");
         }
     }

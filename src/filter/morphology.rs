@@ -1,7 +1,8 @@
 //! Shapes made thinner or fatter: the least or greatest component in a window around each pixel.
 
-use super::image::{Image, Work};
-use super::lines::{Lanes, across, down};
+use super::image::{Image, Work, grown};
+use super::lines::{COLUMNS, Columns, Lanes};
+use super::source::bands;
 use crate::error::Result;
 use crate::geom::IntRect;
 use crate::num::level::dispatch;
@@ -26,7 +27,7 @@ pub(super) fn morphology(
 ) -> Result<Image> {
     let bounds = image.bounds();
     let area = match operator {
-        MorphologyOperator::Dilate => super::image::grown(bounds, radius, radius).intersect(area),
+        MorphologyOperator::Dilate => grown(bounds, radius, radius).intersect(area),
         // Where the window takes in transparent pixels, nothing is left; it does not look beyond the region.
         MorphologyOperator::Erode => {
             let inset = |inside: bool, radius: i32| if inside { radius } else { 0 };
@@ -53,12 +54,17 @@ pub(super) fn morphology(
             }),
         }
     };
-    let columns = down(image, area.top, area.bottom, work, |source, offset, target| {
-        line(source, offset, target, radius.1);
-    })?;
-    across(&columns, area.left, area.right, work, |source, offset, target| {
-        line(source, offset, target, radius.0);
-    })
+    let from = grown(area, radius, radius).intersect(bounds);
+    let mut out = Image::new(area)?;
+    for band in bands(area, COLUMNS / Columns::bytes_of_a_row(from.width()).max(1)) {
+        let read = grown(IntRect { left: from.left, right: from.right, ..band }, (0, radius.1), (0, radius.1));
+        let mut columns = Columns::new(IntRect { left: from.left, right: from.right, ..band })?;
+        columns.fill(image, read.intersect(from), work, |source, offset, target| {
+            line(source, offset, target, radius.1);
+        });
+        columns.write(&mut out, work, |source, offset, target| line(source, offset, target, radius.0));
+    }
+    Ok(out)
 }
 
 /// The extreme in a window around each position, by the method of van Herk and of Gil and Werman: extremes from the left and

@@ -1,7 +1,8 @@
 //! The picture, moved.
 
-use super::image::{Image, moved};
-use crate::error::Result;
+use std::sync::Arc;
+
+use super::image::Image;
 use crate::geom::IntRect;
 
 /// The whole pixels in a distance, towards zero, but not one less for the sake of rounding. 0 for what is not finite.
@@ -14,10 +15,8 @@ pub(super) fn whole_pixels(distance: f32) -> i32 {
 }
 
 /// The picture moved by whole pixels, in `area`.
-pub(super) fn offset(image: &Image, area: IntRect, dx: i32, dy: i32) -> Result<Image> {
-    let mut out = Image::new(moved(image.bounds(), dx, dy).intersect(area))?;
-    out.copy_from(image, dx, dy);
-    Ok(out)
+pub(super) fn offset(image: Arc<Image>, area: IntRect, dx: i32, dy: i32) -> Image {
+    Arc::unwrap_or_clone(image).moved(dx, dy).within(area)
 }
 
 #[cfg(test)]
@@ -36,9 +35,9 @@ mod tests {
 
     #[test]
     fn what_moves_out_of_the_area_is_gone() {
-        let out = offset(&image(0, 0, &["123"]), IntRect::from_ltrb(0, 0, 4, 4), 2, 1).unwrap();
+        let out = offset(image(0, 0, &["123"]).into(), IntRect::from_ltrb(0, 0, 4, 4), 2, 1);
         assert_eq!(out, image(2, 1, &["12"]));
-        let out = offset(&image(0, 0, &["123"]), IntRect::from_ltrb(0, 0, 4, 4), 9, 0).unwrap();
+        let out = offset(image(0, 0, &["123"]).into(), IntRect::from_ltrb(0, 0, 4, 4), 9, 0);
         assert_eq!(out, Image::empty());
     }
 }

@@ -145,14 +145,17 @@ impl PlacedFilter {
 
     /// How many pixels the source graphic may have to be drawn as a whole; of more, it is drawn where it is read.
     ///
-    /// For a single blur it makes no difference how it is drawn; others would have parts drawn for each of them.
+    /// For a single blur it makes no difference how it is drawn, and a shadow has a picture of its own while it draws the
+    /// source; others would have parts drawn for each of them.
     pub(crate) fn most_of_source(&self) -> u64 {
         let reads_source = |(index, primitive): &(usize, &Primitive)| {
             primitive.kind.inputs().into_iter().any(|input| self.result_of(input, *index).is_none())
         };
         let mut readers = self.filter.primitives.iter().enumerate().filter(reads_source);
         match (readers.next(), readers.next()) {
-            (Some((_, Primitive { kind: Kind::GaussianBlur { .. }, .. })), None) => ALWAYS_WHOLE,
+            (Some((_, Primitive { kind: Kind::GaussianBlur { .. } | Kind::DropShadow { .. }, .. })), None) => {
+                ALWAYS_WHOLE
+            }
             _ => self.most,
         }
     }
@@ -399,12 +402,7 @@ impl Inputs<'_> {
             }
             None => self.picture(input),
         };
-        if input != Input::SourceAlpha {
-            return Ok((image, space));
-        }
-        let mut image = Arc::unwrap_or_clone(image);
-        blacken(&mut image, self.work);
-        Ok((Arc::new(image), space))
+        Ok((self.converted(image, input == Input::SourceAlpha, space, space), space))
     }
 
     /// A picture that was made before.
@@ -422,13 +420,8 @@ impl Inputs<'_> {
     /// An input in the given space, shared where possible.
     fn shared(&self, input: Input, space: ColorSpace) -> Result<Arc<Image>> {
         let (image, own) = self.raw(input)?;
-        // Black is black in both.
-        if own == space || input == Input::SourceAlpha {
-            return Ok(image);
-        }
-        let mut image = Arc::unwrap_or_clone(image);
-        convert(&mut image, own, space, self.work);
-        Ok(Arc::new(image))
+        // Black is black in every space.
+        Ok(if input == Input::SourceAlpha { image } else { self.converted(image, false, own, space) })
     }
 
     /// An input in the given space, to change.
@@ -438,13 +431,31 @@ impl Inputs<'_> {
 
     /// An input in the given space, for a primitive that reads it part by part.
     fn in_parts(&self, input: Input, space: ColorSpace) -> Result<Box<dyn Parts + '_>> {
-        Ok(match self.parts_of(input) {
-            Some(parts) => {
-                let alpha_only = input == Input::SourceAlpha;
-                Box::new(Converted { parts, alpha_only, space, work: self.work })
-            }
-            None => Box::new(self.shared(input, space)?),
-        })
+        let alpha_only = input == Input::SourceAlpha;
+        let (to, work) = (space, self.work);
+        if let Some(parts) = self.parts_of(input) {
+            return Ok(Box::new(Converted { parts, alpha_only, from: ColorSpace::Srgb, to, work }));
+        }
+        let (image, from) = self.picture(input);
+        if Arc::strong_count(&image) > 1 {
+            return Ok(Box::new(Converted { parts: image, alpha_only, from, to, work }));
+        }
+        // Read for the last time: it may change as a whole.
+        Ok(Box::new(self.converted(image, alpha_only, from, space)))
+    }
+
+    /// A picture as a primitive asks for it.
+    fn converted(&self, image: Arc<Image>, alpha_only: bool, from: ColorSpace, to: ColorSpace) -> Arc<Image> {
+        if !alpha_only && from == to {
+            return image;
+        }
+        let mut image = Arc::unwrap_or_clone(image);
+        if alpha_only {
+            blacken(&mut image, self.work);
+        } else {
+            convert(&mut image, from, to, self.work);
+        }
+        Arc::new(image)
     }
 
     /// A primitive's result and its space.
@@ -482,7 +493,7 @@ impl Inputs<'_> {
                 if !(scale.0.is_finite() && scale.1.is_finite()) {
                     return Ok((Image::empty(), own));
                 }
-                return Ok((displace(&image, &*self.shared(*map, space)?, area, displacement, scale, work)?, own));
+                return Ok((displace(&image, self.shared(*map, space)?, area, displacement, scale, work)?, own));
             }
             Kind::DropShadow { input, dx, dy, deviation_x, deviation_y, color } => {
                 let (across, down) = placed.blurs(*deviation_x, *deviation_y);
@@ -496,14 +507,14 @@ impl Inputs<'_> {
                 if across.is_nothing() && down.is_nothing() {
                     // Nothing is rounded, then.
                     let (image, own) = self.raw(*input)?;
-                    return Ok((Arc::unwrap_or_clone(image).within(area)?, own));
+                    return Ok((Arc::unwrap_or_clone(image).within(area), own));
                 }
                 blur(&*self.in_parts(*input, space)?, area, placed.cut(), &across, &down, work)?
             }
             Kind::Image { image, destination } => {
                 return Ok((picture(image, area, grid.rect(*destination), work)?, ColorSpace::Srgb));
             }
-            Kind::Merge { inputs } => merge(inputs.iter().map(|input| self.owned(*input, space)), area, work)?,
+            Kind::Merge { inputs } => merge(inputs.iter().map(|input| self.shared(*input, space)), area, work)?,
             Kind::Morphology { input, operator, radius_x, radius_y } => match placed.radii(*radius_x, *radius_y) {
                 Some(radius) => morphology(&*self.shared(*input, space)?, area, region, *operator, radius, work)?,
                 None => Image::empty(),
@@ -511,7 +522,7 @@ impl Inputs<'_> {
             Kind::Offset { input, dx, dy } => {
                 let (image, own) = self.raw(*input)?;
                 let (dx, dy) = placed.whole(*dx, *dy);
-                return Ok((offset(&image, area, dx, dy)?, own));
+                return Ok((offset(image, area, dx, dy), own));
             }
             Kind::Tile { input } => {
                 let (image, own) = self.raw(*input)?;
@@ -702,6 +713,49 @@ mod tests {
                 let parts = Source::Parts(Box::new(InParts(source.crop(placed.source()).unwrap())));
                 let found = placed.run(parts, WORK).unwrap().crop(visible).unwrap();
                 assert!(found == run(&filter, &source, visible), "{name} {visible:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_worked_on_in_bands_is_what_it_is_as_a_whole() {
+        // 33 MiB: three bands of pictures, two of columns.
+        let all = IntRect::from_ltrb(-1500, -1400, 1500, 1500);
+        let input = Input::SourceGraphic;
+        let weights = vec![0.0, 1.0, 2.0, -1.0, 0.5, 0.0, 1.0, 1.0, -3.0];
+        let matrix = ConvolveMatrix {
+            columns: 3,
+            rows: 3,
+            weights,
+            divisor: 2.5,
+            bias: 0.1,
+            target_x: 1,
+            target_y: 0,
+            edge_mode: EdgeMode::Duplicate,
+            preserve_alpha: true,
+        };
+        for kind in [
+            Kind::DropShadow { input, dx: -30.0, dy: 9.0, deviation_x: 7.0, deviation_y: 2.0, color: Color::BLUE },
+            Kind::Morphology { input, operator: MorphologyOperator::Erode, radius_x: 2.0, radius_y: 70.0 },
+            Kind::Morphology { input, operator: MorphologyOperator::Dilate, radius_x: 30.0, radius_y: 1.0 },
+            Kind::ConvolveMatrix { input, matrix },
+        ] {
+            let mut filter = Filter::new();
+            filter.add(kind.clone());
+            let place = |visible| {
+                PlacedFilter::new(Arc::new(filter.clone()), Grid::new(Transform::IDENTITY), visible, all, u64::MAX)
+            };
+            let source = noise(all, 5);
+            let whole = place(all).run(Source::Picture(source.clone()), WORK).unwrap();
+            let placed = place(all);
+            let parts = Source::Parts(Box::new(InParts(source.clone())));
+            assert!(placed.run(parts, WORK).unwrap() == whole, "{kind:?}");
+            // Of what is seen here there is one band.
+            for top in [-1400, -900, -450, 0, 20, 500, 950, 1400] {
+                let visible = IntRect::from_ltrb(-1500, top, 1500, top + 100);
+                let placed = place(visible);
+                let found = placed.run(Source::Picture(source.crop(placed.source()).unwrap()), WORK).unwrap();
+                assert!(found.crop(visible).unwrap() == whole.crop(visible).unwrap(), "{kind:?} {top}");
             }
         }
     }

@@ -5,12 +5,16 @@ use std::sync::Arc;
 
 use super::graph::ColorSpace;
 use super::image::{Image, Work};
+use super::lines::NEIGHBOURS;
 use super::space::convert;
 use crate::error::Result;
 use crate::geom::IntRect;
 
 /// Pictures of so many pixels are made whole on any canvas: all of the surroundings of one of 500 × 500.
 pub(crate) const ALWAYS_WHOLE: u64 = 25 * 500 * 500;
+
+/// Bytes of a part of the picture, where it is drawn in parts.
+pub(super) const PART: usize = 12 << 20;
 
 /// What can be had part by part.
 pub(crate) trait Parts: Sync {
@@ -33,6 +37,20 @@ impl Parts for Image {
 
     fn is_whole(&self) -> bool {
         true
+    }
+}
+
+impl Parts for &dyn Parts {
+    fn bounds(&self) -> IntRect {
+        (**self).bounds()
+    }
+
+    fn part(&self, area: IntRect) -> Result<Cow<'_, Image>> {
+        (**self).part(area)
+    }
+
+    fn is_whole(&self) -> bool {
+        (**self).is_whole()
     }
 }
 
@@ -68,37 +86,74 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Parts of a source graphic as a primitive asks for them.
-pub(super) struct Converted<'a> {
-    pub(super) parts: &'a dyn Parts,
+/// Parts of a picture as a primitive asks for them: no other is made of all of it.
+pub(super) struct Converted<P> {
+    pub(super) parts: P,
     /// Whether only its alpha matters.
     pub(super) alpha_only: bool,
-    pub(super) space: ColorSpace,
+    pub(super) from: ColorSpace,
+    pub(super) to: ColorSpace,
     pub(super) work: Work,
 }
 
-impl Parts for Converted<'_> {
+impl<P> Converted<P> {
+    fn is_as_it_is(&self) -> bool {
+        !self.alpha_only && self.from == self.to
+    }
+}
+
+impl<P: Parts> Parts for Converted<P> {
     fn bounds(&self) -> IntRect {
         self.parts.bounds()
     }
 
     fn part(&self, area: IntRect) -> Result<Cow<'_, Image>> {
         let part = self.parts.part(area)?;
-        if !self.alpha_only && self.space == ColorSpace::Srgb {
+        if self.is_as_it_is() {
             return Ok(part);
         }
-        let mut image = part.into_owned();
+        let mut image = match part {
+            Cow::Borrowed(image) => image.crop(area.intersect(image.bounds()))?,
+            Cow::Owned(image) => image,
+        };
         if self.alpha_only {
             blacken(&mut image, self.work);
         } else {
-            convert(&mut image, ColorSpace::Srgb, self.space, self.work);
+            convert(&mut image, self.from, self.to, self.work);
         }
         Ok(Cow::Owned(image))
     }
 
     fn is_whole(&self) -> bool {
-        self.parts.is_whole()
+        self.is_as_it_is() && self.parts.is_whole()
     }
+}
+
+/// `area` in bands as high as each other, of about so many rows at most.
+pub(super) fn bands(area: IntRect, rows: usize) -> impl Iterator<Item = IntRect> {
+    let height = area.height() as usize;
+    // Whole groups of lines.
+    let count = height.div_ceil(rows.max(NEIGHBOURS));
+    let rows = height.div_ceil(count.max(1)).next_multiple_of(NEIGHBOURS);
+    (0..height.div_ceil(rows.max(1))).map(move |band| {
+        let top = area.top + (band * rows) as i32;
+        IntRect { top, bottom: area.bottom.min(top.saturating_add(rows as i32)), ..area }
+    })
+}
+
+/// `area` in bands whose surroundings, so many pixels wide, are pictures of about [`PART`] bytes.
+pub(super) fn bands_of_parts(area: IntRect, width: u32) -> impl Iterator<Item = IntRect> {
+    bands(area, PART / (width.max(1) as usize * 4))
+}
+
+/// `area` in strips of columns, whole blocks, each a picture of about so many bytes at most.
+pub(super) fn strips(area: IntRect, bytes: usize) -> impl Iterator<Item = IntRect> {
+    let most = bytes / (area.height().max(1) as usize * 4);
+    let columns = (most / NEIGHBOURS * NEIGHBOURS).clamp(NEIGHBOURS, 1 << 20);
+    (0..(area.width() as usize).div_ceil(columns)).map(move |strip| {
+        let left = area.left + (strip * columns) as i32;
+        IntRect { left, right: area.right.min(left.saturating_add(columns as i32)), ..area }
+    })
 }
 
 /// Leaves a picture's alpha. Black is black in every space.
@@ -195,5 +250,16 @@ pub(super) mod tests {
         // Around what lies outside: the side next to it.
         let found = widest(IntRect::from_ltrb(400, 0, 410, 10), outer, 1000);
         assert!(outer.contains(found) && found.right == 310 && (500..=1000).contains(&pixels(found)), "{found:?}");
+    }
+
+    #[test]
+    fn bands_and_strips_are_all_there_is() {
+        let area = IntRect::from_ltrb(-7, 5, 93, 105);
+        let found: Vec<_> = bands(area, 40).map(|band| (band.top, band.bottom)).collect();
+        assert_eq!(found, [(5, 53), (53, 101), (101, 105)]);
+        let found: Vec<_> = strips(area, 100 * 4 * 50).map(|strip| (strip.left, strip.right)).collect();
+        assert_eq!(found, [(-7, 41), (41, 89), (89, 93)]);
+        assert_eq!((bands(area, 1000).collect(), strips(area, usize::MAX).collect()), (vec![area], vec![area]));
+        assert_eq!(bands(IntRect::EMPTY, 0).count() + strips(IntRect::EMPTY, 0).count(), 0);
     }
 }

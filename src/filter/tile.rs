@@ -1,5 +1,7 @@
 //! A tile, repeated.
 
+use std::borrow::Cow;
+
 use super::image::{Image, Work};
 use crate::error::Result;
 use crate::geom::IntRect;
@@ -9,12 +11,13 @@ pub(super) fn tile(image: &Image, area: IntRect, tile: IntRect, work: Work) -> R
     if tile.is_empty() || image.bounds().intersect(tile).is_empty() {
         return Ok(Image::empty());
     }
-    let source = image.crop(tile)?;
+    let source = if image.bounds().contains(tile) { Cow::Borrowed(image) } else { Cow::Owned(image.crop(tile)?) };
     let mut out = Image::new(area)?;
     let width = tile.width() as usize;
     let first = (area.left - tile.left).rem_euclid(tile.right - tile.left) as usize;
     out.for_rows(work, |y, mut row| {
-        let pixels = source.row(tile.top + (y - tile.top).rem_euclid(tile.bottom - tile.top));
+        let y = tile.top + (y - tile.top).rem_euclid(tile.bottom - tile.top);
+        let (_, pixels) = source.part(y, tile.left, tile.right);
         let mut start = first;
         while !row.is_empty() {
             let count = (width - start).min(row.len());

@@ -339,11 +339,14 @@ fn time_and_memory_have_limits() {
     }
 }
 
-/// Runs the program with `mebibytes` of addresses for each of its processes, and expects a picture and not a word.
+/// Draws a square picture with as many addresses for each process as so many bytes beside 64 MiB need, and expects a picture
+/// and not a word.
 #[cfg(target_os = "linux")]
-fn assert_drawn_within(name: &str, mebibytes: u32, content: &str) {
+fn assert_drawn_within(name: &str, side: u32, bytes: u32, content: &str) {
+    // The program, its libraries, the encoder and stacks take some 90 MiB of addresses, and less than 40 MiB of memory.
+    let mebibytes = 64 + 90 + bytes.div_ceil(1 << 20);
     let folder = Folder::new();
-    let text = svg(content).replace("width='64' height='64'", "width='2000' height='2000'");
+    let text = svg(content).replace("width='64' height='64'", &format!("width='{side}' height='{side}'"));
     fs::write(folder.0.join("a.svg"), text).unwrap();
     let script = format!("ulimit -v {} && exec \"$0\" render a.svg --threads 1", mebibytes << 10);
     let mut command = Command::new("sh");
@@ -351,7 +354,23 @@ fn assert_drawn_within(name: &str, mebibytes: u32, content: &str) {
     let output = command.output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && said.is_empty(), "{name} in {mebibytes} MiB: {said}");
-    assert_eq!(folder.picture().unwrap().width(), 2000, "{name}");
+    assert_eq!(folder.picture().unwrap().width(), side, "{name}");
+}
+
+/// A hundred circles in and far around a picture of 2000².
+fn circles() -> String {
+    let circle = |i: u32| {
+        let (x, y, r) = (i * 7919 % 8000, i * 104_729 % 8000, 100 + i * 7);
+        let (x, y) = (i64::from(x) - 3000, i64::from(y) - 3000);
+        format!("<circle cx='{x}.3' cy='{y}.7' r='{r}' fill='#{:06x}' fill-opacity='.6'/>", i * 7_654_321 % 0xFF_FFFF)
+    };
+    (0..100).map(circle).collect()
+}
+
+/// Shapes within a filter whose region is as large as one likes.
+fn everywhere(filter: &str, content: &str) -> String {
+    let region = "filterUnits='userSpaceOnUse' x='-10000' y='-10000' width='22000' height='22000'";
+    format!("<filter id='f' {region}>{filter}</filter><g filter='url(#f)'>{content}</g>")
 }
 
 #[test]
@@ -376,23 +395,11 @@ fn layers_take_their_pixels_and_64_mib() {
         format!("<filter id='f' {region}>{filter}</filter>{groups}")
     };
     let blur = "<feGaussianBlur stdDeviation='200'/>";
-    let wide = |filter: &str, content: &str| {
-        let region = "filterUnits='userSpaceOnUse' x='-10000' y='-10000' width='22000' height='22000'";
-        format!("<filter id='f' {region}>{filter}</filter><g filter='url(#f)'>{content}</g>")
-    };
     let blur_300 = "<feGaussianBlur stdDeviation='300'/>";
     let linear = "<feGaussianBlur color-interpolation-filters='linearRGB' stdDeviation='300 200'/>";
     let glow = "<feGaussianBlur stdDeviation='300' result='a'/><feMerge><feMergeNode in='a'/><feMergeNode in='SourceGraphic'/></feMerge>";
     let chain = "<feGaussianBlur stdDeviation='300'/><feGaussianBlur stdDeviation='300'/><feOffset dx='99'/>";
-    let circles: String = (0..100)
-        .map(|i| {
-            let (x, y, r) = (i * 7919 % 8000 - 3000, i * 104_729 % 8000 - 3000, 100 + i * 7);
-            format!(
-                "<circle cx='{x}.3' cy='{y}.7' r='{r}' fill='#{:06x}' fill-opacity='.6'/>",
-                i * 7_654_321 % 0xFF_FFFF
-            )
-        })
-        .collect();
+    let circles = circles();
     let masked = format!("<mask id='m'>{SHAPE}</mask><g mask='url(#m)'>{SHAPE}</g>");
     let clipped = format!("<clipPath id='m'>{SHAPE}</clipPath><g clip-path='url(#m)'>{SHAPE}</g>");
     // How many pictures of all of the canvas, which is one, are there at a time: groups and masks are drawn in bands and need none.
@@ -411,22 +418,60 @@ fn layers_take_their_pixels_and_64_mib() {
         ("forty blurs", 4, filtered(blur, 40)),
         ("forty blurs in a group", 6, format!("<g opacity='.5'>{}</g>", filtered(blur, 40))),
         // Blurs that bring into view what lies far outside.
-        ("wide blur of a rectangle", 2, wide(blur_300, PLANE)),
-        ("wider blur of a rectangle", 2, wide("<feGaussianBlur stdDeviation='1000'/>", PLANE)),
-        ("wide blur of circles", 2, wide(blur_300, &circles)),
-        ("wide blur in linear light", 2, wide(linear, &circles)),
-        ("wide blur of alpha", 2, wide("<feGaussianBlur in='SourceAlpha' stdDeviation='300'/>", &circles)),
-        ("wide shadow", 3, wide("<feDropShadow dx='300' stdDeviation='300'/>", &circles)),
-        ("wide glow", 3, wide(glow, &circles)),
+        ("wide blur of a rectangle", 2, everywhere(blur_300, PLANE)),
+        ("wider blur of a rectangle", 2, everywhere("<feGaussianBlur stdDeviation='1000'/>", PLANE)),
+        ("wide blur of circles", 2, everywhere(blur_300, &circles)),
+        ("wide blur in linear light", 2, everywhere(linear, &circles)),
+        ("wide blur of alpha", 2, everywhere("<feGaussianBlur in='SourceAlpha' stdDeviation='300'/>", &circles)),
+        ("wide shadow", 3, everywhere("<feDropShadow dx='300' stdDeviation='300'/>", &circles)),
+        ("wide glow", 3, everywhere(glow, &circles)),
         // What lies between primitives, or in a layer inside, has a picture.
-        ("blur of a blur, moved", 3, wide(chain, PLANE)),
-        ("wide erosion", 3, wide("<feMorphology operator='erode' radius='900'/>", PLANE)),
-        ("wide blur of a filtered group", 3, wide(blur_300, &format!("<g filter='url(#f)'>{circles}</g>"))),
-        ("wide blur of blurs", 5, wide(blur_300, &format!("{circles}<g filter='url(#f)'>{PLANE}</g>").repeat(3))),
+        ("blur of a blur, moved", 3, everywhere(chain, PLANE)),
+        ("wide erosion", 3, everywhere("<feMorphology operator='erode' radius='900'/>", PLANE)),
+        ("wide blur of a filtered group", 3, everywhere(blur_300, &format!("<g filter='url(#f)'>{circles}</g>"))),
+        ("wide blur of blurs", 5, everywhere(blur_300, &format!("{circles}<g filter='url(#f)'>{PLANE}</g>").repeat(3))),
     ];
     for (name, pictures, content) in cases {
-        // The program, its libraries, the encoder and stacks take some 90 MiB of addresses, and less than 40 MiB of memory.
-        assert_drawn_within(name, 64 + 90 + 4 * 2000 * 2000 * pictures / (1 << 20), &content);
+        assert_drawn_within(name, 2000, 4 * 2000 * 2000 * pictures, &content);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn layers_take_their_pixels_and_64_mib_of_large_canvases() {
+    let plane = "<rect x='-10000' y='-10000' width='30000' height='30000' fill='red'/>".to_owned();
+    let circles = circles();
+    let blur = "<feGaussianBlur stdDeviation='20'/>";
+    let shadow = "<feDropShadow dx='9' stdDeviation='20'/>";
+    let glow = "<feGaussianBlur stdDeviation='20' result='a'/><feMerge><feMergeNode in='a'/><feMergeNode in='SourceGraphic'/></feMerge>";
+    let old_shadow = "<feGaussianBlur in='SourceAlpha' stdDeviation='20'/><feOffset dx='9' result='a'/><feFlood flood-color='blue'/>\
+                      <feComposite operator='in' in2='a'/><feMerge><feMergeNode/><feMergeNode in='SourceGraphic'/></feMerge>";
+    let noise = "<feTurbulence baseFrequency='.01'/>";
+    let erode = "<feMorphology radius='20'/>";
+    let convolve = "<feConvolveMatrix order='3' preserveAlpha='true' kernelMatrix='0 1 0 1 0 1 0 1 0'/>";
+    let light = "<feDiffuseLighting lighting-color='red'><feDistantLight/></feDiffuseLighting>";
+    // How many pictures of the filter's there are at a time: what a single blur or shadow reads is none.
+    for (name, pictures, filter, content) in [
+        ("none", 0, "", &plane),
+        ("blur", 1, blur, &plane),
+        ("blur of circles", 1, blur, &circles),
+        ("small blur", 1, "<feGaussianBlur stdDeviation='1'/>", &plane),
+        ("shadow", 1, shadow, &plane),
+        ("shadow of circles", 1, shadow, &circles),
+        ("wide shadow", 1, "<feDropShadow dx='300' stdDeviation='300'/>", &plane),
+        ("noise", 1, noise, &plane),
+        ("glow", 2, glow, &plane),
+        ("erosion", 2, erode, &plane),
+        ("convolution", 2, convolve, &plane),
+        ("light", 2, light, &plane),
+        ("shadow of primitives", 3, old_shadow, &plane),
+    ] {
+        let content = if filter.is_empty() { content.clone() } else { everywhere(filter, content) };
+        let canvas = 4 * 4000 * 4000;
+        assert_drawn_within(name, 4000, canvas * (1 + pictures), &content);
+        // A turned canvas has a box of its own: of 4000 · (cos 30° + sin 30°).
+        let turned = format!("<g transform='rotate(30 2000 2000)'>{content}</g>");
+        assert_drawn_within(&format!("{name}, turned"), 4000, canvas + 4 * 5466 * 5466 * pictures, &turned);
     }
 }
 

@@ -1,13 +1,13 @@
 //! Pictures to bytes and back.
 
-use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, Cursor, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+mod encode;
+mod replace;
 
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageDecoder as _, ImageEncoder as _, ImageFormat, ImageReader, RgbaImage};
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+
+use image::{ImageDecoder as _, ImageFormat, ImageReader, RgbaImage};
 
 use crate::error::{Error, Result};
 use crate::surface::{Limits, Pixmap};
@@ -19,8 +19,7 @@ impl Pixmap {
     /// [`Error::Limit`] if memory is not to be had.
     pub fn encode_png(&self) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
-        PngEncoder::new(&mut bytes)
-            .write_image(&self.to_straight(), self.width(), self.height(), ExtendedColorType::Rgba8)
+        encode::png(self, &mut bytes)
             .map_err(|error| Error::Limit(format!("the picture cannot be encoded as PNG: {error}")))?;
         Ok(bytes)
     }
@@ -28,13 +27,15 @@ impl Pixmap {
     /// Writes the picture to `path` as [`Pixmap::encode_png`] encodes it.
     ///
     /// The file is written beside the target and renamed, so that a failure leaves what was there. A target
-    /// that is not a regular file (a pipe, a device) is written in place; a symbolic link is followed.
+    /// that is not a regular file (a pipe, a device) is written in place; a symbolic link is followed. Rows are written as they
+    /// are encoded, so that it takes no memory to speak of.
     ///
     /// # Errors
-    /// [`Error::Io`] if the file cannot be written; else as [`Pixmap::encode_png`].
+    /// [`Error::Io`] if the file cannot be written.
     pub fn save_png(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        write_whole(path, &self.encode_png()?).map_err(|source| Error::Io { path: path.to_owned(), source })
+        replace::replace(path, |file| encode::png(self, file))
+            .map_err(|source| Error::Io { path: path.to_owned(), source })
     }
 
     /// The picture in a PNG file's bytes, at 8 bits a channel; of an animation, the first frame.
@@ -134,52 +135,6 @@ impl From<Pixmap> for RgbaImage {
     /// Divides each pixel by its alpha, rounded to nearest.
     fn from(pixmap: Pixmap) -> Self {
         Self::from(&pixmap)
-    }
-}
-
-/// Writes `bytes` to `path` such that the old content stays until the new is complete.
-fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let old = fs::metadata(path);
-    if let Ok(old) = &old {
-        if !old.is_file() {
-            return File::create(path)?.write_all(bytes);
-        }
-        if old.permissions().readonly() {
-            return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
-        }
-    }
-    // Through a symbolic link the file is replaced that it points to, not the link.
-    let target = if old.is_ok() { fs::canonicalize(path)? } else { path.to_owned() };
-    let (beside, mut file) = create_beside(&target)?;
-    let written = file.write_all(bytes).and_then(|()| match &old {
-        Ok(old) => file.set_permissions(old.permissions()),
-        Err(_) => Ok(()),
-    });
-    drop(file);
-    let done = written.and_then(|()| fs::rename(&beside, &target));
-    if done.is_err() {
-        // The first error is the one worth telling.
-        let _ = fs::remove_file(&beside);
-    }
-    done
-}
-
-/// A new file in the folder of `target`, with a hidden name that no other process or thread takes.
-fn create_beside(target: &Path) -> io::Result<(PathBuf, File)> {
-    static COUNT: AtomicU32 = AtomicU32::new(0);
-    let name =
-        target.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"))?;
-    let mut tries = 0;
-    loop {
-        let mut hidden = OsString::from(".");
-        hidden.push(name);
-        hidden.push(format!(".{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
-        let path = target.with_file_name(hidden);
-        match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(file) => return Ok((path, file)),
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && tries < 100 => tries += 1,
-            Err(error) => return Err(error),
-        }
     }
 }
 
