@@ -469,6 +469,9 @@ fn layers_take_their_pixels_and_64_mib_of_large_canvases() {
         let content = if filter.is_empty() { content.clone() } else { everywhere(filter, content) };
         let canvas = 4 * 4000 * 4000;
         assert_drawn_within(name, 4000, canvas * (1 + pictures), &content);
+        if !["blur", "shadow of circles", "erosion", "shadow of primitives"].contains(&name) {
+            continue;
+        }
         // A turned canvas has a box of its own: of 4000 · (cos 30° + sin 30°).
         let turned = format!("<g transform='rotate(30 2000 2000)'>{content}</g>");
         assert_drawn_within(&format!("{name}, turned"), 4000, canvas + 4 * 5466 * 5466 * pictures, &turned);
