@@ -8,9 +8,10 @@ use fearless_simd::{f32x8, i32x8};
 use super::bins::Edges;
 use super::cell::Accumulator;
 use super::edge::FixedPoint;
-use super::kernel::{PieceLine, Reach, RowParts, STRIP_SHIFT, add_downward, add_row_parts, is_flat};
+use super::kernel::{PieceLine, Reach, RowParts, STRIP_SHIFT, add_downward, add_row_parts, is_flat, two_columns};
 use crate::num::fixed;
-use crate::num::lanes::{max_i32, min_i32};
+use crate::num::lanes::{greater_f32, lesser_f32, max_i32, min_i32};
+use crate::surface::block::BLOCK_HEIGHT;
 
 /// Adds edges to the band whose top is at `top` and which has `strips` strips, as
 /// [`add_edge`](super::kernel::add_edge) does one of them.
@@ -29,6 +30,11 @@ pub(crate) fn add_edges<S: Simd>(
             let eight = Eight::new(simd, from, to, top);
             let all = (1 << count) - 1;
             let (mut single, mut others) = (eight.single & all, eight.climbs & !eight.single & all);
+            let small = eight.small & all;
+            if is_worth_a_batch(small) {
+                single &= !small;
+                others |= add_small(simd, cells, &eight, small, strips, reaches);
+            }
             while single != 0 {
                 let lane = single.trailing_zeros() as usize & 7;
                 single &= single - 1;
@@ -43,6 +49,95 @@ pub(crate) fn add_edges<S: Simd>(
             }
         },
     );
+}
+
+/// Whether so many edges at once are reckoned faster than each for itself: from three on.
+#[inline(always)]
+fn is_worth_a_batch(edges: u32) -> bool {
+    let but_one = edges & edges.wrapping_sub(1);
+    but_one & but_one.wrapping_sub(1) != 0
+}
+
+/// Adds edges of at most two rows and two columns; the answer are those of them that are for the general way.
+#[inline(always)]
+fn add_small<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    eight: &Eight,
+    small: u32,
+    strips: usize,
+    reaches: &[Reach],
+) -> u32 {
+    let areas = SmallAreas::new(simd, eight);
+    let mut others = 0;
+    let mut left = small;
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize & 7;
+        left &= left - 1;
+        let strip = (eight.start_y[lane] >> STRIP_SHIFT) as usize;
+        if strip >= strips {
+            continue;
+        }
+        let (least, greatest) = (eight.least[lane], eight.greatest[lane]);
+        if let Some(reach) = reaches.get(strip) {
+            if reach.ends_before(least) {
+                continue;
+            }
+            if !reach.holds(least, greatest) {
+                others |= 1 << lane;
+                continue;
+            }
+        }
+        let Some(strip) = cells.strip(strip) else { continue };
+        let first = (least >> fixed::SHIFT) as usize;
+        strip.occupy_pair(first, (greatest >> fixed::SHIFT) as usize + 1);
+        let row = (eight.start_y[lane] >> fixed::SHIFT) as usize & (BLOCK_HEIGHT - 1);
+        let Some(columns) = strip.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) else {
+            continue;
+        };
+        // Where there is no lower row, zeros are added: a branch would be wrong half of the time.
+        let below = (row + 1) & (BLOCK_HEIGHT - 1);
+        for (column, [upper, lower]) in columns.iter_mut().zip(&areas.columns) {
+            column.0[row] = column.0[row].wrapping_add(upper[lane]);
+            column.0[below] = column.0[below].wrapping_add(lower[lane]);
+        }
+    }
+    others
+}
+
+/// What eight edges of at most two rows and two columns add, a lane for each of them: to the cells of the first column, of the
+/// next and of the one after, in the row in which they start and in the one beneath. The kernel's formula, across instead of
+/// down.
+struct SmallAreas {
+    columns: [[[i32; 8]; 2]; 3],
+}
+
+impl SmallAreas {
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, eight: &Eight) -> Self {
+        let (height, start_y) =
+            (i32x8::load_array_ref(simd, &eight.height), i32x8::load_array_ref(simd, &eight.start_y));
+        let (start, slope) = (f32x8::load_array_ref(simd, &eight.start), f32x8::load_array_ref(simd, &eight.slope));
+        // How far down the lower row begins.
+        let upper = min_i32(i32x8::splat(simd, 256) - (start_y & 255), height);
+        let middle = upper.to_float::<f32x8<S>>() * slope + start;
+        let end = height.to_float::<f32x8<S>>() * slope + start;
+        let upper_row = Self::row(simd, eight, start, middle, upper);
+        let lower_row = Self::row(simd, eight, middle, end, height - upper);
+        let ([a, b, c], [d, e, f]) = (upper_row, lower_row);
+        Self { columns: [[a, d], [b, e], [c, f]] }
+    }
+
+    /// What parts add that go from `from` to `to`, so far down.
+    #[inline(always)]
+    fn row<S: Simd>(simd: S, eight: &Eight, from: f32x8<S>, to: f32x8<S>, climb: i32x8<S>) -> [[i32; 8]; 3] {
+        let signed = climb * i32x8::load_array_ref(simd, &eight.winding);
+        let steep = f32x8::load_array_ref(simd, &eight.steep);
+        let beyond = (signed + signed).to_float::<f32x8<S>>();
+        let (left, right) = (lesser_f32(from, to), greater_f32(from, to));
+        let [here, next, after] = two_columns(simd, left, right, steep, beyond, signed << 9);
+        [here.to_array(), next.to_array(), after.to_array()]
+    }
 }
 
 /// Adds an edge that keeps to one strip; false if it is for the general way: flat, or only some of its columns matter.
@@ -92,6 +187,8 @@ struct Eight {
     /// Which of them are not horizontal, as bits, and which of these lie within one strip.
     climbs: u32,
     single: u32,
+    /// Which of the latter have at most two rows and two columns.
+    small: u32,
     /// Where they start, downwards; y from the band's top.
     start_x: [i32; 8],
     start_y: [i32; 8],
@@ -119,12 +216,16 @@ impl Eight {
         let height = end_y - start_y;
         let one_strip = (start_y >> STRIP_SHIFT).simd_eq((end_y - 1) >> STRIP_SHIFT);
         let climbs = height.simd_gt(0);
+        let rows = ((end_y - 1) >> fixed::SHIFT) - (start_y >> fixed::SHIFT);
+        let columns = (greatest >> fixed::SHIFT) - (least >> fixed::SHIFT);
+        let small = (rows | columns).simd_lt(2);
         let (run, rise) = ((end_x - start_x).to_float::<f32x8<S>>(), height.to_float::<f32x8<S>>());
         let zero = f32x8::splat(simd, 0.0);
         let steep = rise * winding.to_float::<f32x8<S>>() / run.abs();
         Self {
             climbs: climbs.to_bitmask() as u32,
             single: (climbs & one_strip).to_bitmask() as u32,
+            small: (climbs & one_strip & small).to_bitmask() as u32,
             start_x: start_x.to_array(),
             start_y: start_y.to_array(),
             end_x: end_x.to_array(),

@@ -325,6 +325,22 @@ fn add_to<S: Simd>(simd: S, column: &mut Column, value: i32x8<S>) {
 #[inline(always)]
 fn add_two_columns<S: Simd>(simd: S, [here, next, after]: &mut [Column; 3], row: RowParts<S>) {
     let RowParts { left, right, steep, beyond, total, .. } = row;
+    let values = two_columns(simd, left, right, steep, beyond, total);
+    add_to(simd, here, values[0]);
+    add_to(simd, next, values[1]);
+    add_to(simd, after, values[2]);
+}
+
+/// What parts that lie in the first two columns add to these and to the one after.
+#[inline(always)]
+pub(super) fn two_columns<S: Simd>(
+    simd: S,
+    left: f32x8<S>,
+    right: f32x8<S>,
+    steep: f32x8<S>,
+    beyond: f32x8<S>,
+    total: i32x8<S>,
+) -> [i32x8<S>; 3] {
     let zero = f32x8::splat(simd, 0.0);
     let side = f32x8::splat(simd, 256.0);
     let t = greater_f32(lesser_f32(right, side) - left, zero);
@@ -333,9 +349,7 @@ fn add_two_columns<S: Simd>(simd: S, [here, next, after]: &mut [Column; 3], row:
     let area = round_raised_f32(within + beyond * greater_f32(side - right, zero));
     let rest = steep * width * width - within;
     let next_area = round_raised_f32(rest + beyond * lesser_f32(512.0 - right, side));
-    add_to(simd, here, area - RAISED);
-    add_to(simd, next, next_area - area);
-    add_to(simd, after, total + RAISED - next_area);
+    [area - RAISED, next_area - area, total + RAISED - next_area]
 }
 
 /// Adds parts that lie in all columns but the last.
