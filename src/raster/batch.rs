@@ -74,23 +74,16 @@ fn add_small<S: Simd>(
     while left != 0 {
         let lane = left.trailing_zeros() as usize & 7;
         left &= left - 1;
-        let strip = (eight.start_y[lane] >> STRIP_SHIFT) as usize;
-        if strip >= strips {
-            continue;
-        }
-        let (least, greatest) = (eight.least[lane], eight.greatest[lane]);
-        if let Some(reach) = reaches.get(strip) {
-            if reach.ends_before(least) {
-                continue;
-            }
-            if !reach.holds(least, greatest) {
+        let (strip, first, last) = match eight.place(lane, strips, reaches) {
+            Place::Seen(strip, first, last) => (strip, first, last),
+            Place::Unseen => continue,
+            Place::PartlySeen => {
                 others |= 1 << lane;
                 continue;
             }
-        }
+        };
         let Some(strip) = cells.strip(strip) else { continue };
-        let first = (least >> fixed::SHIFT) as usize;
-        strip.occupy_pair(first, (greatest >> fixed::SHIFT) as usize + 1);
+        strip.occupy_pair(first, last + 1);
         let row = (eight.start_y[lane] >> fixed::SHIFT) as usize & (BLOCK_HEIGHT - 1);
         let Some(columns) = strip.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) else {
             continue;
@@ -150,21 +143,11 @@ fn add_single<S: Simd>(
     strips: usize,
     reaches: &[Reach],
 ) -> bool {
-    // Of edges above the band the strip is negative, which no index is.
-    let strip = (eight.start_y[lane] >> STRIP_SHIFT) as usize;
-    if strip >= strips {
-        return true;
-    }
-    let (least, greatest) = (eight.least[lane], eight.greatest[lane]);
-    let (first, last) = ((least >> fixed::SHIFT) as usize, (greatest >> fixed::SHIFT) as usize);
-    if let Some(reach) = reaches.get(strip) {
-        if reach.ends_before(least) {
-            return true;
-        }
-        if !reach.holds(least, greatest) {
-            return false;
-        }
-    }
+    let (strip, first, last) = match eight.place(lane, strips, reaches) {
+        Place::Seen(strip, first, last) => (strip, first, last),
+        Place::Unseen => return true,
+        Place::PartlySeen => return false,
+    };
     if is_flat(first, last, eight.height[lane] as f32) {
         return false;
     }
@@ -180,6 +163,16 @@ fn add_single<S: Simd>(
         add_row_parts(simd, strip, RowParts::of(simd, line), first, last);
     }
     true
+}
+
+/// Where an edge of one strip lies.
+enum Place {
+    /// Where nothing matters.
+    Unseen,
+    /// In columns of which only some matter.
+    PartlySeen,
+    /// In this strip, and from this column to that.
+    Seen(usize, usize, usize),
 }
 
 /// What there is to know of eight edges: each array has a lane for each.
@@ -237,6 +230,26 @@ impl Eight {
             least: least.to_array(),
             greatest: greatest.to_array(),
         }
+    }
+
+    /// Where one of those lies that keep to one strip.
+    #[inline(always)]
+    fn place(&self, lane: usize, strips: usize, reaches: &[Reach]) -> Place {
+        // Of edges above the band the strip is negative, which no index is.
+        let strip = (self.start_y[lane] >> STRIP_SHIFT) as usize;
+        if strip >= strips {
+            return Place::Unseen;
+        }
+        let (least, greatest) = (self.least[lane], self.greatest[lane]);
+        if let Some(reach) = reaches.get(strip) {
+            if reach.ends_before(least) {
+                return Place::Unseen;
+            }
+            if !reach.holds(least, greatest) {
+                return Place::PartlySeen;
+            }
+        }
+        Place::Seen(strip, (least >> fixed::SHIFT) as usize, (greatest >> fixed::SHIFT) as usize)
     }
 
     /// An edge as [`Edge::downward`](super::edge::Edge::downward) gives it.

@@ -239,6 +239,23 @@ fn standard_input_to_standard_output() {
 }
 
 #[test]
+fn standard_streams_have_names_as_well() {
+    let folder = Folder::new();
+    folder.write("flag.svg", FLAG);
+    // Drawn by the program itself, and, being larger, by a worker of it, whose standard streams lead to the program.
+    for zoom in ["1", "800"] {
+        let scale = zoom.parse::<u32>().unwrap();
+        for (input, output, given) in
+            [("/dev/stdin", "-", FLAG), ("/dev/fd/0", "/dev/stdout", FLAG), ("flag.svg", "/proc/self/fd/1", "")]
+        {
+            let output = folder.run_with_input(&["render", input, "-o", output, "-z", zoom], given.as_bytes());
+            assert_success(&output);
+            assert_flag(&Pixmap::decode_png(&output.stdout).unwrap(), 4 * scale, 2 * scale);
+        }
+    }
+}
+
+#[test]
 fn several_inputs_take_a_pattern() {
     let folder = Folder::new();
     folder.write("in/a.svg", FLAG).write("in/b.svg", FLAG);

@@ -18,6 +18,7 @@ use crate::args::Timings;
 use crate::depth_file;
 use crate::files::write_whole;
 use crate::json;
+use crate::plan::is_standard_output;
 use crate::report::{self, Failure, Outcome};
 
 const EXAMPLES: &str = "\
@@ -349,7 +350,7 @@ pub(crate) fn run(arguments: &MeshArguments) -> Result<Outcome, Failure> {
             parsed.as_secs_f64() * 1e3,
             json::strings(warnings.iter().map(String::as_str)),
         );
-        if output.as_os_str() == "-" {
+        if is_standard_output(output.as_os_str()) {
             eprint!("{line}");
         } else {
             report::print(line.as_bytes())?;
@@ -702,7 +703,7 @@ fn save_depths(
 }
 
 fn save(picture: &Pixmap, path: &Path) -> Result<(), Failure> {
-    if path.as_os_str() == "-" {
+    if is_standard_output(path.as_os_str()) {
         let bytes = picture.encode_png().map_err(|error| Failure::new(error.to_string()))?;
         return report::print(&bytes);
     }

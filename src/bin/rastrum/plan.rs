@@ -47,9 +47,19 @@ pub(crate) fn plan(inputs: &[OsString], output: Option<&OsStr>) -> Result<Vec<Jo
     Ok(jobs)
 }
 
+/// Names of the standard streams. A worker has others of its own, through which it is told what to draw: it must not open them by
+/// these names.
+const STANDARD_INPUT: [&str; 4] = ["-", "/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"];
+const STANDARD_OUTPUT: [&str; 4] = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
+
+/// Whether an output's name means the program's own output.
+pub(crate) fn is_standard_output(name: &OsStr) -> bool {
+    STANDARD_OUTPUT.iter().any(|other| name == *other)
+}
+
 fn find(input: &OsStr, sources: &mut Vec<Source>) -> Result<(), Failure> {
     let path = Path::new(input);
-    if input == "-" {
+    if STANDARD_INPUT.iter().any(|name| input == *name) {
         sources.push(Source { path: None, below: PathBuf::new() });
     } else if path.is_dir() {
         let before = sources.len();
@@ -105,7 +115,7 @@ fn target(source: &Source, output: Option<&OsStr>, count: usize) -> Result<Optio
     let Some(output) = output else {
         return Ok(source.path.as_ref().map(|path| path.with_extension("png")));
     };
-    if output == "-" {
+    if is_standard_output(output) {
         return if count == 1 {
             Ok(None)
         } else {
@@ -214,6 +224,8 @@ mod tests {
         assert_eq!(outputs(&["no/a.svg"], None).unwrap(), ["no/a.png"]);
         assert_eq!(outputs(&["-"], None).unwrap(), ["-"]);
         assert_eq!(outputs(&["no/a.svg"], Some("-")).unwrap(), ["-"]);
+        assert_eq!(outputs(&["/dev/stdin"], Some("/dev/stdout")).unwrap(), ["-"]);
+        assert_eq!(outputs(&["/dev/fd/0"], None).unwrap(), ["-"]);
         assert_eq!(outputs(&["no/a.svg"], Some("b.png")).unwrap(), ["b.png"]);
         assert_eq!(
             outputs(&["no/a.svg", "b.svgz"], Some("{dir}/{stem}@2x.png")).unwrap(),
