@@ -184,6 +184,7 @@ impl Canvas<'_> {
             return;
         }
         let index = self.list.paints.len() as u32;
+        let opaque = prepared.is_opaque();
         self.list.paints.push(prepared);
         self.list.commands.push(Command::Draw(Draw {
             geometry,
@@ -192,6 +193,7 @@ impl Canvas<'_> {
             blend_mode: paint.blend_mode,
             clip: self.state.clip,
             bounds,
+            opaque,
         }));
     }
 
@@ -246,14 +248,14 @@ impl Canvas<'_> {
         if list.commands.is_empty() || bounds.is_empty() {
             return 0;
         }
-        self.list.commands.push(Command::Effect(Effect {
-            list: Box::new(list),
+        self.list.commands.push(Command::Effect(Box::new(Effect {
+            list,
             extent,
             kind: EffectKind::Shadow { offset: (dx, dy), deviation, color: shadow.color },
             blend_mode: paint.blend_mode,
             clip: self.state.clip,
             bounds,
-        }));
+        })));
         pixels(bounds) * 4
     }
 
@@ -261,7 +263,9 @@ impl Canvas<'_> {
     fn move_geometry(&mut self, geometry: &mut Geometry, dx: i32, dy: i32) {
         match geometry {
             Geometry::Fill { transform, .. } | Geometry::Stroke { transform, .. } => {
-                *transform = transform.post_concat(Transform::from_translate(dx as f32, dy as f32));
+                let moved = self.list.transform(*transform);
+                *transform =
+                    self.list.add_transform(moved.post_concat(Transform::from_translate(dx as f32, dy as f32)));
             }
             Geometry::Rect(rect) => *rect = rect.moved(dx, dy),
             Geometry::Spans((first, end)) => {
@@ -287,6 +291,7 @@ impl Canvas<'_> {
         }
         let bounds = self.device_bounds(path, 0.0)?;
         let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
+        let transform = self.list.add_transform(transform);
         Some((Geometry::Fill { verbs, points, transform, rule }, bounds))
     }
 
@@ -340,6 +345,7 @@ impl Canvas<'_> {
         let reach = if stroke.width == 0.0 { reach } else { stroke.width * reach };
         let bounds = self.device_bounds(path, reach)?;
         let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
+        let transform = self.list.add_transform(transform);
         let style = self.list.strokes.len() as u32;
         self.list.strokes.push(stroke.clone());
         Some((Geometry::Stroke { verbs, points, transform, style }, bounds))

@@ -92,6 +92,7 @@ impl Canvas<'_> {
     /// Records a picture of `area`.
     fn draw_picture(&mut self, picture: PreparedPaint, area: IntRect, blend_mode: BlendMode) {
         let paint = self.list.paints.len() as u32;
+        let opaque = picture.is_opaque();
         self.list.paints.push(picture);
         self.list.commands.push(Command::Draw(Draw {
             geometry: Geometry::Bounds,
@@ -100,6 +101,7 @@ impl Canvas<'_> {
             blend_mode,
             clip: ClipId::NONE,
             bounds: area,
+            opaque,
         }));
     }
 

@@ -147,14 +147,14 @@ impl FilterLayer {
             list.commands.insert(0, Command::BeginLayer(layer.clone()));
             list.commands.push(Command::EndLayer(layer));
         }
-        Command::Effect(Effect {
-            list: Box::new(list),
+        Command::Effect(Box::new(Effect {
+            list,
             extent: self.extent,
             kind: EffectKind::Filter { filter: self.filter.clone(), to_device: self.to_outer, opacity: self.opacity },
             blend_mode: self.blend_mode,
             clip: self.clip,
             bounds: self.bounds,
-        })
+        }))
     }
 }
 

@@ -28,12 +28,12 @@ pub(crate) enum Geometry {
         verbs: (u32, u32),
         /// Where it lies in [`DisplayList::points`].
         points: (u32, u32),
-        /// From its space to device pixels.
-        transform: Transform,
+        /// From its space to device pixels: indexes [`DisplayList::transforms`].
+        transform: u32,
         rule: FillRule,
     },
     /// The stroke of an outline; `style` indexes [`DisplayList::strokes`].
-    Stroke { verbs: (u32, u32), points: (u32, u32), transform: Transform, style: u32 },
+    Stroke { verbs: (u32, u32), points: (u32, u32), transform: u32, style: u32 },
     /// An axis-aligned rectangle in device space.
     Rect(FixedRect),
     /// Whole pixels: a range of [`DisplayList::spans`].
@@ -79,6 +79,8 @@ pub(crate) struct Draw {
     pub(crate) clip: ClipId,
     /// The device pixels that it may touch: the clip's bounds.
     pub(crate) bounds: IntRect,
+    /// Whether its paint is.
+    pub(crate) opaque: bool,
 }
 
 /// The start of a layer.
@@ -103,7 +105,7 @@ impl LayerStart {
 #[derive(Clone, Debug)]
 pub(crate) struct Effect {
     /// What it applies to, moved so that `extent` starts at (0, 0).
-    pub(crate) list: Box<DisplayList>,
+    pub(crate) list: DisplayList,
     /// The pixels of what it applies to: the device's, or the filter's own.
     pub(crate) extent: IntRect,
     pub(crate) kind: EffectKind,
@@ -144,7 +146,8 @@ pub(crate) enum Command {
     /// What follows becomes a mask for the layer below.
     BeginMask(IntRect),
     EndMask(IntRect, MaskKind),
-    Effect(Effect),
+    /// Far larger than the others and rare: they stay small.
+    Effect(Box<Effect>),
 }
 
 /// A recording.
@@ -155,6 +158,7 @@ pub(crate) struct DisplayList {
     pub(crate) points: Vec<Point>,
     pub(crate) spans: Vec<Span>,
     pub(crate) strokes: Vec<Stroke>,
+    pub(crate) transforms: Vec<Transform>,
     pub(crate) paints: Vec<PreparedPaint>,
     pub(crate) clips: Vec<ClipNode>,
 }
@@ -167,6 +171,7 @@ impl DisplayList {
         self.points.clear();
         self.spans.clear();
         self.strokes.clear();
+        self.transforms.clear();
         self.paints.clear();
         self.clips.clear();
     }
@@ -183,6 +188,19 @@ impl DisplayList {
         ranges
     }
 
+    /// Stores a transform. Shapes in a row mostly share theirs, so that commands only name it.
+    pub(crate) fn add_transform(&mut self, transform: Transform) -> u32 {
+        if self.transforms.last() != Some(&transform) {
+            self.transforms.push(transform);
+        }
+        self.transforms.len() as u32 - 1
+    }
+
+    /// The transform of a geometry.
+    pub(crate) fn transform(&self, index: u32) -> Transform {
+        self.transforms.get(index as usize).copied().unwrap_or(Transform::IDENTITY)
+    }
+
     /// The clip with the given name; `None` for [`ClipId::NONE`].
     pub(crate) fn clip(&self, id: ClipId) -> Option<&ClipNode> {
         self.clips.get(id.0 as usize)
@@ -194,5 +212,17 @@ impl DisplayList {
             self.verbs.get(verbs.0 as usize..verbs.1 as usize).unwrap_or(&[]),
             self.points.get(points.0 as usize..points.1 as usize).unwrap_or(&[]),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_are_small() {
+        // They are read anew for every band: at most a cache line each.
+        let size = size_of::<Command>();
+        assert!(size <= 64, "{size} bytes");
     }
 }

@@ -157,6 +157,7 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                         blend_mode: effect.blend_mode,
                         clip: effect.clip,
                         bounds: picture.bounds,
+                        opaque: picture.paint.is_opaque(),
                     };
                     paint_draw(simd, frame, target, scratch, &draw, &picture.paint, edges);
                 }

@@ -9,7 +9,6 @@ use super::kept::KeepSink;
 use crate::blend::BlendMode;
 use crate::display_list::{ClipId, Command, Draw, Geometry};
 use crate::geom::IntRect;
-use crate::paint::PreparedPaint;
 use crate::raster::bins::Edges;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
@@ -53,15 +52,18 @@ pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut Ban
 /// Whether a shape is worth a look: opaque, with room for whole blocks, and not mostly edges; the less so, the fewer
 /// items lie beneath it.
 fn may_hide(frame: &Frame<'_>, draw: &Draw, edges: usize, beneath: usize) -> bool {
-    let opaque = matches!(draw.blend_mode, BlendMode::SourceOver | BlendMode::Source)
+    let replaces = draw.opaque
         && draw.clip == ClipId::NONE
-        && matches!(draw.geometry, Geometry::Fill { .. } | Geometry::Rect(_) | Geometry::Bounds)
-        && frame.list.paints.get(draw.paint as usize).is_some_and(PreparedPaint::is_opaque);
+        && matches!(draw.blend_mode, BlendMode::SourceOver | BlendMode::Source)
+        && matches!(draw.geometry, Geometry::Fill { .. } | Geometry::Rect(_) | Geometry::Bounds);
+    if !replaces {
+        return false;
+    }
     let (top, bottom) = (draw.bounds.top.max(frame.top), draw.bounds.bottom.min(frame.top + frame.rows as i32));
     let across =
         draw.bounds.right / BLOCK_WIDTH as i32 - (draw.bounds.left + BLOCK_WIDTH as i32 - 1) / BLOCK_WIDTH as i32;
     let blocks = across.max(0) as usize * ((bottom - top).max(0) as usize / BLOCK_HEIGHT);
-    opaque && edges <= EDGES_PER_BLOCK.min(beneath) * blocks && blocks * beneath > 0
+    edges <= EDGES_PER_BLOCK.min(beneath) * blocks && blocks * beneath > 0
 }
 
 /// Keeps a shape's coverage where it can be seen and claims the blocks that it covers whole.

@@ -113,6 +113,7 @@ impl Chunk {
         match geometry {
             Geometry::Fill { verbs, points, transform, .. } => {
                 let (verbs, points) = list.outline(*verbs, *points);
+                let transform = list.transform(*transform);
                 let points = if transform.is_identity() {
                     points
                 } else {
@@ -126,7 +127,8 @@ impl Chunk {
                 let (verbs, points) = list.outline(*verbs, *points);
                 if let Some(style) = list.strokes.get(*style as usize) {
                     let visible = bounds.to_rect();
-                    stroke(verbs, points, style, *transform, TOLERANCE, visible, &mut self.stroke, &mut self.polygons);
+                    let transform = list.transform(*transform);
+                    stroke(verbs, points, style, transform, TOLERANCE, visible, &mut self.stroke, &mut self.polygons);
                 }
             }
             // What has no slanted edges is covered without a list of them, unless it is sampled.
