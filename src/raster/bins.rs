@@ -398,7 +398,6 @@ fn rounded<S: Simd>(simd: S, block: [Point; 4]) -> [FixedPoint; 4] {
     bytemuck::cast(truncate_f32(v.round_ties_even()).to_array())
 }
 
-/// Appends device points within ±2^22 as fixed point, rounded to nearest, ties to even.
 /// A closed polygon's corners in fixed point, the first one once more at the end.
 #[inline(always)]
 fn append_closed<S: Simd>(simd: S, polygon: &[Point], out: &mut Vec<FixedPoint>) {
@@ -409,6 +408,7 @@ fn append_closed<S: Simd>(simd: S, polygon: &[Point], out: &mut Vec<FixedPoint>)
     }
 }
 
+/// Appends device points within ±2^22 as fixed point, rounded to nearest, ties to even.
 #[inline(always)]
 fn append_fixed<S: Simd>(simd: S, points: &[Point], out: &mut Vec<FixedPoint>) {
     let (blocks, rest) = points.as_chunks::<4>();

@@ -16,10 +16,9 @@ use crate::display_list::Draw;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
 use crate::raster::sweep::BlockSink;
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, PixelBlock};
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, PixelBlock, Rows};
 
 const ROW_BYTES: usize = BLOCK_WIDTH * 4;
-const FULL_ROW: [u8; BLOCK_WIDTH] = [255; BLOCK_WIDTH];
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
 const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 
@@ -272,13 +271,12 @@ impl Painter<'_, '_, '_> {
         color: [u8; 4],
         replaces: bool,
     ) {
-        for (row, &coverage) in rows.iter().enumerate().take(self.rows) {
+        let mut lines = self.surface.lines(self.strip, start, end);
+        for (row, &coverage) in rows.iter().enumerate() {
             if coverage == 0 {
                 continue;
             }
-            let row = self.strip * BLOCK_HEIGHT + row;
-            let slice = self.surface.row(row, start, end);
-            let (blocks, tail) = slice.as_chunks_mut::<ROW_BYTES>();
+            let (blocks, tail) = lines.row(row).as_chunks_mut::<ROW_BYTES>();
             if coverage == 255 && replaces {
                 // Whole blocks at a time: four bytes at a time would be stored one by one.
                 for pixels in blocks {
@@ -310,47 +308,77 @@ impl Painter<'_, '_, '_> {
     }
 
     /// Draws one block by its final coverage.
-    #[inline(never)]
+    #[inline(always)]
     fn paint<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+        match self.look.source {
+            Source::Solid(color) if self.look.blend_mode == BlendMode::SourceOver => {
+                self.paint_solid(simd, index, mask, color);
+            }
+            _ => self.paint_pixels(simd, index, mask),
+        }
+    }
+
+    /// Source-over of one colour, by far the most frequent.
+    #[inline(never)]
+    fn paint_solid<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock, color: [u8; 4]) {
         simd.vectorize(
             #[inline(always)]
-            || self.paint_inner(simd, index, mask),
+            || self.paint_solid_inner(simd, index, mask, color),
         );
     }
 
     #[inline(always)]
-    fn paint_inner<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
-        let covered = |row: usize| mask.get(row).is_some_and(|row| *row != [0; BLOCK_WIDTH]);
-        let over = self.look.blend_mode == BlendMode::SourceOver;
-        if over && let Source::Solid(color) = self.look.source {
-            let pattern = &self.pattern;
-            if color[3] == 255 {
-                self.surface.for_block(
-                    self.strip,
-                    index,
-                    covered,
+    fn paint_solid_inner<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock, color: [u8; 4]) {
+        let (pattern, opaque) = (&self.pattern, color[3] == 255);
+        let covered = Rows::covered(simd, mask);
+        self.surface.with_block(
+            self.strip,
+            index,
+            #[inline(always)]
+            |mut rows| {
+                if !opaque {
+                    rows.each(
+                        covered,
+                        #[inline(always)]
+                        |row, pixels| {
+                            if let Some(mask) = mask.get(row) {
+                                over_solid_row(simd, pixels, color, mask);
+                            }
+                        },
+                    );
+                    return;
+                }
+                let full = Rows::full(simd, mask);
+                rows.each(
+                    full,
                     #[inline(always)]
-                    |row, pixels| match mask.get(row) {
-                        Some(&FULL_ROW) => *pixels = *pattern,
-                        Some(mask) => over_opaque_row(simd, pixels, color, mask),
-                        None => {}
-                    },
+                    |_, pixels| *pixels = *pattern,
                 );
-            } else {
-                self.surface.for_block(
-                    self.strip,
-                    index,
-                    covered,
+                rows.each(
+                    covered.without(full),
                     #[inline(always)]
                     |row, pixels| {
                         if let Some(mask) = mask.get(row) {
-                            over_solid_row(simd, pixels, color, mask);
+                            over_opaque_row(simd, pixels, color, mask);
                         }
                     },
                 );
-            }
-            return;
-        }
+            },
+        );
+    }
+
+    /// Any blend of any source.
+    #[inline(never)]
+    fn paint_pixels<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.paint_pixels_inner(simd, index, mask),
+        );
+    }
+
+    #[inline(always)]
+    fn paint_pixels_inner<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+        let over = self.look.blend_mode == BlendMode::SourceOver;
         let mut source = NO_PIXELS;
         let mut opaque = false;
         match &mut self.look.source {
@@ -372,19 +400,33 @@ impl Painter<'_, '_, '_> {
             self.surface.store(self.strip, index, &pixels);
             return;
         }
-        self.surface.for_block(
+        let (covered, full) = (Rows::covered(simd, mask), Rows::full(simd, mask));
+        self.surface.with_block(
             self.strip,
             index,
-            covered,
             #[inline(always)]
-            |row, pixels| {
-                let (Some(mask), Some(source)) = (mask.get(row), source.get(row)) else { return };
-                match (opaque, *mask == FULL_ROW) {
-                    (true, true) => *pixels = *source,
-                    (true, false) => mix_pixels_row(simd, pixels, source, mask),
-                    (false, true) => over_pixels_full(simd, pixels, source),
-                    (false, false) => over_pixels_row(simd, pixels, source, mask),
-                }
+            |mut rows| {
+                rows.each(
+                    full,
+                    #[inline(always)]
+                    |row, pixels| match source.get(row) {
+                        Some(source) if opaque => *pixels = *source,
+                        Some(source) => over_pixels_full(simd, pixels, source),
+                        None => {}
+                    },
+                );
+                rows.each(
+                    covered.without(full),
+                    #[inline(always)]
+                    |row, pixels| {
+                        let (Some(mask), Some(source)) = (mask.get(row), source.get(row)) else { return };
+                        if opaque {
+                            mix_pixels_row(simd, pixels, source, mask);
+                        } else {
+                            over_pixels_row(simd, pixels, source, mask);
+                        }
+                    },
+                );
             },
         );
     }

@@ -1,8 +1,9 @@
 //! The rows of a band that is being painted: the target's own, or a layer's.
 
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, PixelBlock};
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, PixelBlock, Rows};
 
 const ROW_BYTES: usize = BLOCK_WIDTH * 4;
+const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 
 /// Premultiplied RGBA8 rows of one band.
 pub(super) struct Surface<'a> {
@@ -31,65 +32,50 @@ impl<'a> Surface<'a> {
         self.rows.saturating_sub(strip * BLOCK_HEIGHT).min(BLOCK_HEIGHT)
     }
 
-    /// The part of a row in blocks `start..end`.
+    /// The rows of strip `strip` in blocks `start..end`, as far as they exist.
     #[inline(always)]
-    pub(super) fn row(&mut self, row: usize, start: usize, end: usize) -> &mut [u8] {
-        let from = start.saturating_sub(self.first_block) * ROW_BYTES;
+    pub(super) fn lines(&mut self, strip: usize, start: usize, end: usize) -> Lines<'_> {
+        let from = (start.saturating_sub(self.first_block) * ROW_BYTES).min(self.row_bytes);
         let to = (end.saturating_sub(self.first_block) * ROW_BYTES).min(self.row_bytes);
-        let base = row * self.stride;
-        self.data.get_mut(base + from.min(to)..base + to).unwrap_or(&mut [])
+        let count = self.strip_rows(strip);
+        let bytes = self.data.get_mut(strip * BLOCK_HEIGHT * self.stride + from..).unwrap_or(&mut []);
+        Lines { bytes, stride: self.stride, width: to.saturating_sub(from), count }
     }
 
-    /// Applies `f` to each row's number in the strip and its 16 pixels in block `block`, for the rows that `wanted` says
-    /// yes to. At the right side, where rows end inside the block, to a copy.
+    /// Calls `f` with a block's rows. At the right side, where rows end inside the block, these are a copy.
     #[inline(always)]
-    pub(super) fn for_block(
-        &mut self,
-        strip: usize,
-        block: usize,
-        wanted: impl Fn(usize) -> bool,
-        mut f: impl FnMut(usize, &mut [u8; ROW_BYTES]),
-    ) {
-        let rows = self.strip_rows(strip);
-        let from = block.saturating_sub(self.first_block) * ROW_BYTES;
-        let cut = from + ROW_BYTES > self.row_bytes;
-        let end = if cut { self.row_bytes.max(from) } else { from + ROW_BYTES };
-        let lines = self.data.get_mut(strip * BLOCK_HEIGHT * self.stride..).unwrap_or(&mut []);
-        for (row, line) in lines.chunks_mut(self.stride.max(1)).take(rows).enumerate() {
-            if !wanted(row) {
-                continue;
-            }
-            let Some(slice) = line.get_mut(from..end) else { break };
-            // One place that calls `f`, which is long.
-            let mut copy = [0; ROW_BYTES];
-            if cut {
-                for (copy, byte) in copy.iter_mut().zip(slice.iter()) {
-                    *copy = *byte;
-                }
-            }
-            let pixels = slice.first_chunk_mut::<ROW_BYTES>();
-            f(row, pixels.unwrap_or(&mut copy));
-            if cut {
-                for (byte, copy) in slice.iter_mut().zip(copy) {
-                    *byte = copy;
-                }
-            }
+    pub(super) fn with_block(&mut self, strip: usize, block: usize, f: impl FnOnce(BlockRows<'_>)) {
+        let mut lines = self.lines(strip, block, block + 1);
+        let mut copy = if lines.width < ROW_BYTES { Some(lines.cut_block()) } else { None };
+        let count = lines.count;
+        // One place that calls `f`, which is long.
+        f(match &mut copy {
+            Some(copy) => BlockRows { bytes: copy.as_flattened_mut(), stride: ROW_BYTES, count },
+            None => BlockRows { bytes: lines.bytes, stride: lines.stride, count },
+        });
+        if let Some(copy) = &copy {
+            self.lines(strip, block, block + 1).put_cut_block(copy);
         }
     }
 
     /// A copy of a block; pixels that do not exist are transparent.
     #[inline(always)]
     pub(super) fn load(&mut self, strip: usize, block: usize) -> PixelBlock {
-        let mut copy = [[0; ROW_BYTES]; BLOCK_HEIGHT];
-        self.for_block(
+        let mut copy = NO_PIXELS;
+        self.with_block(
             strip,
             block,
-            |_| true,
             #[inline(always)]
-            |row, pixels| {
-                if let Some(copy) = copy.get_mut(row) {
-                    *copy = *pixels;
-                }
+            |mut rows| {
+                rows.each(
+                    Rows::ALL,
+                    #[inline(always)]
+                    |row, pixels| {
+                        if let Some(copy) = copy.get_mut(row) {
+                            *copy = *pixels;
+                        }
+                    },
+                );
             },
         );
         copy
@@ -98,14 +84,84 @@ impl<'a> Surface<'a> {
     /// Writes a block back.
     #[inline(always)]
     pub(super) fn store(&mut self, strip: usize, block: usize, pixels: &PixelBlock) {
-        self.for_block(
+        self.with_block(
             strip,
             block,
-            |_| true,
             #[inline(always)]
-            |row, out| {
-                if let Some(pixels) = pixels.get(row) {
-                    *out = *pixels;
+            |mut rows| {
+                rows.each(
+                    Rows::ALL,
+                    #[inline(always)]
+                    |row, out| {
+                        if let Some(pixels) = pixels.get(row) {
+                            *out = *pixels;
+                        }
+                    },
+                );
+            },
+        );
+    }
+}
+
+/// Parts of a strip's rows.
+pub(super) struct Lines<'a> {
+    bytes: &'a mut [u8],
+    stride: usize,
+    /// Bytes of each part.
+    width: usize,
+    count: usize,
+}
+
+impl Lines<'_> {
+    /// The part of row `row` of the strip; nothing if there is no such row.
+    #[inline(always)]
+    pub(super) fn row(&mut self, row: usize) -> &mut [u8] {
+        if row >= self.count {
+            return &mut [];
+        }
+        let from = row * self.stride;
+        self.bytes.get_mut(from..from + self.width).unwrap_or(&mut [])
+    }
+
+    /// A copy of a block of which these are what exists; the rest is transparent.
+    #[inline(never)]
+    fn cut_block(&mut self) -> PixelBlock {
+        let mut copy = NO_PIXELS;
+        for (row, copy) in copy.iter_mut().enumerate() {
+            for (copy, byte) in copy.iter_mut().zip(self.row(row)) {
+                *copy = *byte;
+            }
+        }
+        copy
+    }
+
+    #[inline(never)]
+    fn put_cut_block(&mut self, copy: &PixelBlock) {
+        for (row, copy) in copy.iter().enumerate() {
+            for (byte, copy) in self.row(row).iter_mut().zip(copy) {
+                *byte = *copy;
+            }
+        }
+    }
+}
+
+/// A block's rows in place.
+pub(super) struct BlockRows<'a> {
+    bytes: &'a mut [u8],
+    stride: usize,
+    count: usize,
+}
+
+impl BlockRows<'_> {
+    /// Applies `f` to the numbers and pixels of those of `rows` that exist.
+    #[inline(always)]
+    pub(super) fn each(&mut self, rows: Rows, mut f: impl FnMut(usize, &mut [u8; ROW_BYTES])) {
+        rows.within(self.count).for_each(
+            #[inline(always)]
+            |row| {
+                let rest = self.bytes.get_mut(row * self.stride..);
+                if let Some(pixels) = rest.and_then(|rest| rest.first_chunk_mut::<ROW_BYTES>()) {
+                    f(row, pixels);
                 }
             },
         );
