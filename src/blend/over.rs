@@ -42,16 +42,48 @@ pub(crate) fn over_solid_row<S: Simd>(simd: S, row: &mut [u8; 64], color: [u8; 4
 
 /// [`over_solid_row`] for an opaque colour, faster: the alpha of `color` is taken to be 255.
 #[inline(always)]
-pub(crate) fn over_opaque_row<S: Simd>(simd: S, row: &mut [u8; 64], [r, g, b, _]: [u8; 4], mask: &[u8; 16]) {
-    let source = solid(simd, [r, g, b, 255]);
-    let masks = mask_words(simd, mask);
-    over_halves(
-        simd,
-        row,
-        masks,
-        #[inline(always)]
-        |_, below, mask| mix(below, source, mask).to_bytes(),
-    );
+pub(crate) fn over_opaque_row<S: Simd>(simd: S, row: &mut [u8; 64], color: [u8; 4], mask: &[u8; 16]) {
+    OpaqueRow::new(simd, color, mask).over(simd, row);
+}
+
+/// An opaque colour by a mask, made ready once for rows that share both.
+#[derive(Clone, Copy)]
+pub(crate) struct OpaqueRow<S: Simd> {
+    /// Of each half of the row, what the colour adds, with the half that rounds.
+    added: [Words<S>; 2],
+    /// How much of what is below stays.
+    rest: [u16x16<S>; 2],
+}
+
+impl<S: Simd> OpaqueRow<S> {
+    /// The alpha of `color` is taken to be 255.
+    #[inline(always)]
+    pub(crate) fn new(simd: S, [r, g, b, _]: [u8; 4], mask: &[u8; 16]) -> Self {
+        let source = solid(simd, [r, g, b, 255]);
+        let [low, high] = mask_words(simd, mask);
+        let (low_added, high_added) = (source.times(low), source.times(high));
+        Self { added: [low_added, high_added], rest: [low ^ 255, high ^ 255] }
+    }
+
+    /// Puts it over 16 pixels.
+    #[inline(always)]
+    pub(crate) fn over(&self, simd: S, row: &mut [u8; 64]) {
+        let [low, high] = self.added;
+        over_halves(
+            simd,
+            row,
+            self.rest,
+            #[inline(always)]
+            |half, below, rest| {
+                let added = if half == 0 { low } else { high };
+                Words {
+                    even: quotient_255(below.even * rest + added.even),
+                    odd: quotient_255(below.odd * rest + added.odd),
+                }
+                .to_bytes()
+            },
+        );
+    }
 }
 
 /// [`over_solid_row`] with mask 255 throughout. For an opaque colour this is a fill: write it instead.

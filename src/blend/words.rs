@@ -31,6 +31,12 @@ impl<S: Simd> Words<S> {
         (self.even | (self.odd << 8)).bitcast()
     }
 
+    /// Every lane times `by`, with the 128 that [`quotient_255`] rounds by.
+    #[inline(always)]
+    pub(super) fn times(self, by: u16x16<S>) -> Self {
+        Self { even: self.even * by + 128, odd: self.odd * by + 128 }
+    }
+
     /// Each pixel's alpha in both of its lanes.
     #[inline(always)]
     pub(super) fn alpha(self) -> u16x16<S> {

@@ -30,6 +30,11 @@ pub(crate) trait BlockSink<S: Simd> {
     }
     /// Coverage of the block `index` (16 columns each) of the strip.
     fn block(&mut self, simd: S, index: usize, mask: &MaskBlock);
+    /// Coverage of the block `index`, in which a rectangle starts or ends.
+    #[inline(always)]
+    fn side(&mut self, simd: S, index: usize, side: &RectSide) {
+        self.block(simd, index, &side.mask(simd));
+    }
     /// Blocks `start..end` are covered by the same value along each row.
     fn run(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]);
 }
@@ -181,31 +186,47 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
     let start = if whole(first) { first } else { first + 1 };
     let end = if whole(last) { last + 1 } else { last };
     if start > first && sink.wants(first) {
-        sink.block(simd, first, &edge_block(simd, heights, left - side(first), right - side(first)));
+        sink.side(simd, first, &RectSide { heights, left: left - side(first), right: right - side(first) });
     }
     if start < end {
         sink.run(simd, start, end, &rows);
     }
     if end <= last && (last > first || start == first) && sink.wants(last) {
-        sink.block(simd, last, &edge_block(simd, heights, left - side(last), right - side(last)));
+        sink.side(simd, last, &RectSide { heights, left: left - side(last), right: right - side(last) });
     }
 }
 
-/// The coverage of a block between `left` and `right`, in 1/256 pixel from the block's left side, of whose rows so much of
-/// the height is covered.
-#[inline(always)]
-fn edge_block<S: Simd>(simd: S, heights: [u32; BLOCK_HEIGHT], left: i32, right: i32) -> MaskBlock {
-    // Most rows are covered over their whole height.
-    let whole = covered_row(simd, left, right, fixed::ONE as u32);
-    let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
-    for (row, height) in mask.iter_mut().zip(heights) {
-        *row = match height {
-            0 => continue,
-            256 => whole,
-            part => covered_row(simd, left, right, part),
-        };
+/// What of a block a rectangle covers that does not cover it from side to side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RectSide {
+    /// How much of each row's height is covered, of 256.
+    pub(crate) heights: [u32; BLOCK_HEIGHT],
+    /// From where to where, in 1/256 pixel from the block's left side.
+    left: i32,
+    right: i32,
+}
+
+impl RectSide {
+    /// The coverage of a row of which `height` / 256 is covered.
+    #[inline(always)]
+    pub(crate) fn row<S: Simd>(&self, simd: S, height: u32) -> [u8; BLOCK_WIDTH] {
+        covered_row(simd, self.left, self.right, height)
     }
-    mask
+
+    #[inline(always)]
+    pub(crate) fn mask<S: Simd>(&self, simd: S) -> MaskBlock {
+        // Most rows are covered over their whole height.
+        let whole = self.row(simd, fixed::ONE as u32);
+        let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
+        for (row, height) in mask.iter_mut().zip(self.heights) {
+            *row = match height {
+                0 => continue,
+                256 => whole,
+                part => self.row(simd, part),
+            };
+        }
+        mask
+    }
 }
 
 /// The coverage of a block's row between `left` and `right`, in 1/256 pixel from the block's left side, for `height` / 256

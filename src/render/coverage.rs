@@ -62,6 +62,22 @@ impl Coverage {
     }
 }
 
+/// What a shape covers of the band's blocks, if that is a rectangle.
+#[inline(always)]
+pub(super) fn rectangle(
+    frame: &Frame<'_>,
+    geometry: &Geometry,
+    antialias: Antialias,
+    bounds: IntRect,
+) -> Option<FixedRect> {
+    let bounds = bounds.intersect(frame.area());
+    match geometry {
+        Geometry::Rect(rect) if is_exact(antialias) => Some(rect.intersect(bounds)),
+        Geometry::Bounds => Some(FixedRect::of_pixels(bounds)),
+        _ => None,
+    }
+}
+
 /// Brings a shape, of which only what lies in `bounds` (device pixels) is drawn, into the cells, and says how to read
 /// them.
 #[inline(never)]
@@ -98,12 +114,8 @@ fn accumulate_inner<S: Simd>(
         add_spans(frame, &mut scratch.cells, frame.list.spans.get(range.0 as usize..range.1 as usize).unwrap_or(&[]));
         return Coverage::Cells(CoverageRule::NonZero);
     }
-    match geometry {
-        Geometry::Rect(rect) if is_exact(antialias) => {
-            return Coverage::Rect(rect.intersect(bounds.intersect(frame.area())));
-        }
-        Geometry::Bounds => return Coverage::Rect(FixedRect::of_pixels(bounds.intersect(frame.area()))),
-        _ => {}
+    if let Some(rect) = rectangle(frame, geometry, antialias, bounds) {
+        return Coverage::Rect(rect);
     }
     let top = frame.top << fixed::SHIFT;
     // Where outlines do not cross, areas are exact.

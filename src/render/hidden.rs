@@ -4,11 +4,13 @@
 use fearless_simd::Simd;
 
 use super::band::{BandScratch, Frame};
-use super::coverage::accumulate;
+use super::coverage::{accumulate, rectangle};
 use super::kept::KeepSink;
+use super::occlusion::Occlusion;
 use crate::blend::BlendMode;
 use crate::display_list::{ClipId, Command, Draw, Geometry};
-use crate::geom::IntRect;
+use crate::geom::{FixedRect, IntRect};
+use crate::num::fixed;
 use crate::raster::bins::Edges;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
@@ -76,8 +78,13 @@ fn claim_blocks<S: Simd>(
     edges: Edges<'_>,
     order: u32,
 ) {
+    let seen = find_visible(frame, scratch, draw.bounds);
+    if seen && let Some(rect) = rectangle(frame, &draw.geometry, draw.antialias, draw.bounds) {
+        // Its coverage is found again as soon as it would be read.
+        return claim_rect(frame, &mut scratch.occlusion, rect, order);
+    }
     scratch.kept.begin(order);
-    if !find_visible(frame, scratch, draw.bounds) {
+    if !seen {
         return;
     }
     let coverage = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, draw.bounds, edges);
@@ -95,6 +102,22 @@ fn claim_blocks<S: Simd>(
             }
         },
     );
+}
+
+/// Claims the blocks that a rectangle covers whole.
+fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, order: u32) {
+    const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
+    let (first, end) = ((rect.left.max(0) + BLOCK - 1) / BLOCK, rect.right.max(0) / BLOCK);
+    if first >= end {
+        return;
+    }
+    for strip in 0..frame.strips {
+        let top = frame.strip_top(strip);
+        let bottom = (top + BLOCK_HEIGHT as i32).min(frame.top + frame.rows as i32);
+        if rect.top <= top << fixed::SHIFT && rect.bottom >= bottom << fixed::SHIFT {
+            occlusion.claim(order, strip, first as usize, end as usize);
+        }
+    }
 }
 
 /// Notes for each strip where a draw within `bounds` can be seen; false if nowhere. Without hidden blocks it notes

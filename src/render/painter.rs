@@ -9,13 +9,14 @@ use super::kept::{Kept, KeptCoverage};
 use super::occlusion::Occlusion;
 use super::surface::Surface;
 use crate::blend::{
-    BlendMode, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row, over_solid_full,
-    over_solid_row, scale_mask_row, scale_mask_row_by,
+    BlendMode, OpaqueRow, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row,
+    over_solid_full, over_solid_row, scale_mask_row, scale_mask_row_by,
 };
 use crate::display_list::Draw;
+use crate::num::fixed;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
-use crate::raster::sweep::BlockSink;
+use crate::raster::sweep::{BlockSink, RectSide};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, PixelBlock, Rows};
 
 const ROW_BYTES: usize = BLOCK_WIDTH * 4;
@@ -179,6 +180,17 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
         let mut mask = *mask;
         if self.cut(simd, index, &mut mask) {
             self.paint(simd, index, &mask);
+        }
+    }
+
+    #[inline(always)]
+    fn side(&mut self, simd: S, index: usize, side: &RectSide) {
+        let plain = self.look.clip.is_none() && self.look.opacity == 255;
+        match self.look.source {
+            Source::Solid(color) if plain && color[3] == 255 && self.look.blend_mode == BlendMode::SourceOver => {
+                self.paint_side(simd, index, side, color);
+            }
+            _ => self.block(simd, index, &side.mask(simd)),
         }
     }
 
@@ -361,6 +373,36 @@ impl Painter<'_, '_, '_> {
                         if let Some(mask) = mask.get(row) {
                             over_opaque_row(simd, pixels, color, mask);
                         }
+                    },
+                );
+            },
+        );
+    }
+
+    /// An opaque colour where a rectangle starts or ends: most rows share their coverage.
+    #[inline(never)]
+    fn paint_side<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide, color: [u8; 4]) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.paint_side_inner(simd, index, side, color),
+        );
+    }
+
+    #[inline(always)]
+    fn paint_side_inner<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide, color: [u8; 4]) {
+        let whole = OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE as u32));
+        self.surface.with_block(
+            self.strip,
+            index,
+            #[inline(always)]
+            |mut rows| {
+                rows.each(
+                    Rows::ALL,
+                    #[inline(always)]
+                    |row, pixels| match side.heights.get(row) {
+                        None | Some(0) => {}
+                        Some(256) => whole.over(simd, pixels),
+                        Some(part) => over_opaque_row(simd, pixels, color, &side.row(simd, *part)),
                     },
                 );
             },
