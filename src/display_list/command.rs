@@ -79,7 +79,7 @@ pub(crate) struct Draw {
     pub(crate) clip: ClipId,
     /// The device pixels that it may touch: the clip's bounds.
     pub(crate) bounds: IntRect,
-    /// Whether its paint is.
+    /// Whether its paint is opaque.
     pub(crate) opaque: bool,
 }
 

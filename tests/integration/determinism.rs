@@ -146,3 +146,44 @@ fn hidden_shapes_leave_no_trace() {
         assert!(draw(true) == draw(false), "round {round}");
     }
 }
+
+/// Rectangles have ways of their own to be searched for what they hide and to be painted: the bytes must be those of the same
+/// outline with a corner more, which is a path like any other.
+#[test]
+fn rectangles_are_painted_as_paths_are() {
+    let mut random = crate::oracle::Random::new(11);
+    let mut below = move |limit: i64| random.within(0..limit);
+    for round in 0..30 {
+        let mut rects = Vec::new();
+        for _ in 0..80 {
+            // Sides on 1/256 of pixels, on pixels and on blocks; some leave the canvas.
+            let step = [1, 256, 16 * 256][below(3) as usize];
+            let mut side = |from: i64, length: i64| (from * 256 + below(length * 256)) / step * step;
+            let (left, top) = (side(-20, 220), side(-20, 150));
+            let (right, bottom) = (left + 1 + side(0, 70), top + 1 + side(0, 50));
+            let opacity = if below(5) == 0 { 0.6 } else { 1.0 };
+            let color = Color::from_rgb8(below(256) as u8, below(256) as u8, 40).with_opacity(opacity);
+            let [left, top, right, bottom] = [left, top, right, bottom].map(|v| v as f32 / 256.0);
+            rects.push((Rect::from_ltrb(left, top, right, bottom), color));
+        }
+        let draw = |as_paths: bool, level: SimdLevel| {
+            let mut canvas = Canvas::with_settings(203, 131, RenderSettings::default().with_level(level)).unwrap();
+            for (rect, color) in &rects {
+                if as_paths {
+                    let mut path = Path::new();
+                    path.move_to((rect.left, rect.top)).line_to(((rect.left + rect.right) / 2.0, rect.top));
+                    path.line_to((rect.right, rect.top)).line_to((rect.right, rect.bottom));
+                    path.line_to((rect.left, rect.bottom)).close();
+                    canvas.fill_path(&path, FillRule::NonZero, *color);
+                } else {
+                    canvas.fill_rect(*rect, *color);
+                }
+            }
+            canvas.into_pixmap().into_vec()
+        };
+        let expected = draw(true, SimdLevel::Scalar);
+        for level in SimdLevel::available() {
+            assert!(draw(false, level) == expected, "round {round} at {level:?}");
+        }
+    }
+}
