@@ -3,13 +3,11 @@
 use fearless_simd::Simd;
 
 use super::band::Frame;
-use super::surface::Surface;
+use super::surface::{ROW_BYTES, Surface};
 use crate::blend::multiply_block_by_mask;
 use crate::geom::IntRect;
 use crate::surface::MaskKind;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
-
-const ROW_BYTES: usize = BLOCK_WIDTH * 4;
 
 /// The pixels of an open layer in this band. They take memory from the first draw on: layers that only hold
 /// layers can be as deep as anyone likes.

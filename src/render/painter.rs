@@ -7,7 +7,7 @@ use super::clip::{BandMask, ClipBlock};
 use super::coverage::Coverage;
 use super::kept::{Kept, KeptCoverage};
 use super::occlusion::Occlusion;
-use super::surface::Surface;
+use super::surface::{NO_PIXELS, ROW_BYTES, Surface};
 use crate::blend::{
     BlendMode, OpaqueRow, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row,
     over_solid_full, over_solid_row, scale_mask_row, scale_mask_row_by,
@@ -17,11 +17,9 @@ use crate::num::fixed;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
 use crate::raster::sweep::{BlockSink, RectSide};
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, PixelBlock, Rows};
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, Rows};
 
-const ROW_BYTES: usize = BLOCK_WIDTH * 4;
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
-const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 
 /// Where a painter's colours come from.
 pub(super) enum Source<'a> {

@@ -2,8 +2,10 @@
 
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, PixelBlock, Rows};
 
-const ROW_BYTES: usize = BLOCK_WIDTH * 4;
-const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
+/// Bytes of a block's row.
+pub(super) const ROW_BYTES: usize = BLOCK_WIDTH * 4;
+/// A transparent block.
+pub(super) const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 
 /// Premultiplied RGBA8 rows of one band.
 pub(super) struct Surface<'a> {

@@ -187,10 +187,13 @@ fn clip_bounds_are_those_of_all_clips() {
 /// Clips, saves and draws between which `pause` is called.
 fn draw_with_pauses(canvas: &mut Canvas<'_>, mut pause: impl FnMut(&mut Canvas<'_>)) {
     let mut circle = Path::new();
-    circle.circle((20.0, 20.0), 15.0);
+    circle.circle((0.0, 0.0), 7.5);
     let mask = Mask::from_vec(2, 40, (0..80).map(|i| i * 3).collect()).unwrap();
     canvas.clear(Color::WHITE);
+    // Each clip goes with the transform under which it was made.
+    canvas.set_transform(Transform::from_row(2.0, 0.0, 0.0, 2.0, 20.0, 20.0));
     canvas.clip_path(&circle, FillRule::NonZero, Antialias::Analytic);
+    canvas.set_transform(Transform::IDENTITY);
     pause(canvas);
     canvas.save();
     canvas.clip_rect(rect(5.5, 5.5, 30.0, 31.0), Antialias::Analytic);
