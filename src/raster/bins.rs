@@ -7,7 +7,7 @@ use super::cut::Cutter;
 use super::edge::{Edge, FixedPoint};
 use super::kernel::STRIP_SHIFT;
 use super::simple::{MOST_CORNERS, Simplicity};
-use crate::geom::{IntRect, Point};
+use crate::geom::{FixedRect, IntRect, Point};
 use crate::num::fixed;
 use crate::num::lanes::{max_f32, min_f32, truncate_f32};
 use crate::path::polygons::Polygons;
@@ -15,14 +15,46 @@ use crate::path::polygons::Polygons;
 /// Outlines that reach further, in pixels, are not asked where they cross.
 const FARTHEST: f32 = 1e6;
 
-/// One draw's edges in one band: `edges[start..end]` of the band belong to command `command`.
+/// What one command is in one band.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BandItem {
     pub(crate) command: u32,
-    start: u32,
-    end: u32,
-    /// Which of the bins' crossed strips are its, if that is known.
-    crossed: Option<(u32, u32)>,
+    pub(crate) role: Role,
+    pub(crate) content: Content,
+}
+
+/// What a command may mean for those before it: known without a look at it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// It leaves them visible.
+    Plain,
+    /// It hides what it covers whole.
+    Opaque,
+    /// It begins or ends a layer.
+    Bracket,
+}
+
+/// What a band needs to know of an item.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Content {
+    /// A shape's edges, if it has any: some of the band's.
+    Edges {
+        start: u32,
+        end: u32,
+        /// Which of the bins' crossed strips are its, if that is known.
+        crossed: Option<(u32, u32)>,
+    },
+    /// A rectangle in one colour, drawn over what is there: there is no need to look at the command.
+    Rect(FixedRect, [u8; 4]),
+}
+
+impl BandItem {
+    /// One whose edges are still to be listed, from `start` on.
+    #[inline(always)]
+    fn open(command: u32, role: Role, start: usize) -> Self {
+        let start = start as u32;
+        Self { command, role, content: Content::Edges { start, end: start, crossed: None } }
+    }
 }
 
 /// What one band has to draw, in the order of the commands.
@@ -150,26 +182,36 @@ impl EdgeBins {
 
     /// The edges of one of a band's items.
     pub(crate) fn edges<'a>(&'a self, band: &'a BandList, item: BandItem) -> Edges<'a> {
-        let starts = band.edges.get(item.start as usize..item.end as usize).unwrap_or(&[]);
-        let crossed = item.crossed.and_then(|(start, end)| self.crossed.get(start as usize..end as usize));
+        let Content::Edges { start, end, crossed } = item.content else { return Edges::default() };
+        let starts = band.edges.get(start as usize..end as usize).unwrap_or(&[]);
+        let crossed = crossed.and_then(|(start, end)| self.crossed.get(start as usize..end as usize));
         Edges { points: &self.points, starts, crossed }
     }
 
     /// Lists `command`, which has no edges, for every band that `bounds` (device pixels) touches.
-    pub(crate) fn list(&mut self, command: u32, bounds: IntRect) {
+    pub(crate) fn list(&mut self, command: u32, role: Role, bounds: IntRect) {
         for band in self.bands_of(bounds.top << fixed::SHIFT, bounds.bottom << fixed::SHIFT) {
-            let end = band.edges.len() as u32;
-            band.items.push(BandItem { command, start: end, end, crossed: None });
+            band.items.push(BandItem::open(command, role, band.edges.len()));
         }
     }
 
-    /// Lists the edges of `polygons` within `clip` (device pixels) as those of `command`, for the bands that they touch.
+    /// Lists `command`, a rectangle in one colour, for every band that it touches.
+    #[inline(always)]
+    pub(crate) fn list_rect(&mut self, command: u32, role: Role, rect: FixedRect, color: [u8; 4]) {
+        if rect.left < rect.right {
+            for band in self.bands_of(rect.top, rect.bottom) {
+                band.items.push(BandItem { command, role, content: Content::Rect(rect, color) });
+            }
+        }
+    }
+
+    /// Lists the edges of `polygons` within `clip` (device pixels) as those of a command, for the bands that they touch.
     /// `open_right` says that no pixel right of `clip` can be drawn, `prove` that it is worth looking where they cross.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &mut self,
         simd: S,
-        command: u32,
+        (command, role): (u32, Role),
         polygons: &Polygons,
         clip: IntRect,
         open_right: bool,
@@ -183,7 +225,7 @@ impl EdgeBins {
                     && right <= clip.right as f32
                     && bottom <= clip.bottom as f32 =>
             {
-                self.add_inside(simd, command, polygons, fixed::from_f32(top), fixed::from_f32(bottom), prove);
+                self.add_inside(simd, (command, role), polygons, fixed::from_f32(top), fixed::from_f32(bottom), prove);
             }
             Some(extent) if prove && extent.iter().all(|v| v.abs() < FARTHEST) => {
                 // Before it is cut: what it is must not depend on where.
@@ -194,15 +236,15 @@ impl EdgeBins {
                     self.ends.push(self.outline.len());
                 }
                 let proof = Proof::new(&mut self.simplicity, &self.outline, &self.ends, &mut self.crossed);
-                self.add_cut(command, polygons, clip, open_right, proof);
+                self.add_cut((command, role), polygons, clip, open_right, proof);
             }
-            _ => self.add_cut(command, polygons, clip, open_right, Proof::default()),
+            _ => self.add_cut((command, role), polygons, clip, open_right, Proof::default()),
         }
     }
 
     /// Lists polygons that lie between `top` and `bottom` (fixed point) and need no clipping.
     #[inline(always)]
-    fn add_inside<S: Simd>(&mut self, simd: S, command: u32, polygons: &Polygons, top: i32, bottom: i32, prove: bool) {
+    fn add_inside<S: Simd>(&mut self, simd: S, (command, role): (u32, Role), polygons: &Polygons, top: i32, bottom: i32, prove: bool) {
         if top == bottom || u32::try_from(self.points.len() + 2 * polygons.points().len()).is_err() {
             return;
         }
@@ -210,8 +252,7 @@ impl EdgeBins {
         let (first_band, last_band) = (top >> self.band_shift, (bottom - 1) >> self.band_shift);
         let Some(bands) = self.bands.get_mut(first_band as usize..=last_band as usize) else { return };
         for band in bands.iter_mut() {
-            let start = band.edges.len() as u32;
-            band.items.push(BandItem { command, start, end: start, crossed: None });
+            band.items.push(BandItem::open(command, role, band.edges.len()));
         }
         self.ends.clear();
         for polygon in polygons.iter() {
@@ -241,15 +282,14 @@ impl EdgeBins {
 
     /// Lists polygons that may leave the clip.
     #[inline(never)]
-    fn add_cut(&mut self, command: u32, polygons: &Polygons, clip: IntRect, open_right: bool, proof: Proof) {
+    fn add_cut(&mut self, (command, role): (u32, Role), polygons: &Polygons, clip: IntRect, open_right: bool, proof: Proof) {
         let Self { points, bands, band_shift, crossed, .. } = self;
         let Some(bands) = touched(bands, clip.top << fixed::SHIFT, clip.bottom << fixed::SHIFT, *band_shift) else {
             return;
         };
         let first_top = (clip.top.max(0) << fixed::SHIFT) >> *band_shift << *band_shift;
         for band in bands.iter_mut() {
-            let start = band.edges.len() as u32;
-            band.items.push(BandItem { command, start, end: start, crossed: None });
+            band.items.push(BandItem::open(command, role, band.edges.len()));
         }
         let mut cutter = Cutter::new(
             clip,
@@ -322,9 +362,13 @@ fn touched(bands: &mut [BandList], top: i32, bottom: i32, band_shift: u32) -> Op
 #[inline(always)]
 fn close_item(band: &mut BandList, crossed: Option<(u32, u32)>) -> bool {
     let end = band.edges.len() as u32;
-    let Some(item) = band.items.last_mut() else { return true };
-    (item.end, item.crossed) = (end, crossed);
-    let empty = item.start == end;
+    let Some(BandItem { content: Content::Edges { start, end: item_end, crossed: item_crossed }, .. }) =
+        band.items.last_mut()
+    else {
+        return true;
+    };
+    (*item_end, *item_crossed) = (end, crossed);
+    let empty = *start == end;
     if empty {
         band.items.pop();
     }
@@ -441,7 +485,7 @@ mod tests {
         polygons.end();
         let mut bins = EdgeBins::default();
         bins.reset(bands, height_shift);
-        dispatch!(SimdLevel::best(), simd => bins.add(simd, 7, &polygons, clip, open_right, false));
+        dispatch!(SimdLevel::best(), simd => bins.add(simd, (7, Role::Plain), &polygons, clip, open_right, false));
         bins
     }
 

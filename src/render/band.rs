@@ -23,7 +23,7 @@ use crate::display_list::{Command, DisplayList, Draw, Geometry, LayerStart};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::level::{SimdLevel, dispatch};
 use crate::paint::PreparedPaint;
-use crate::raster::bins::Edges;
+use crate::raster::bins::{Content, Edges};
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
 use crate::raster::exact::ExactScratch;
@@ -113,6 +113,10 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
             scratch.occlusion.release(place);
             order += 1;
             if scratch.kept.drop_hidden(place) {
+                continue;
+            }
+            if let Content::Rect(rect, color) = item.content {
+                paint_rect(simd, frame, target, scratch, rect, color);
                 continue;
             }
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };
@@ -207,6 +211,24 @@ fn paint_draw_inner<S: Simd>(
     let clip = clips.current(draw.clip);
     let look = Look::new(draw, paint, clip);
     paint_coverage(simd, frame, cells, coverage, look, surface, (occlusion, visible));
+}
+
+/// Draws a rectangle in one colour over what is there.
+#[inline(always)]
+fn paint_rect<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    target: &mut Surface<'_>,
+    scratch: &mut BandScratch,
+    rect: FixedRect,
+    color: [u8; 4],
+) {
+    if find_visible(frame, scratch, rect.pixels()) {
+        let BandScratch { cells, layers, occlusion, visible, .. } = scratch;
+        let surface = &mut open_surface(frame, target, layers);
+        let look = Look { source: Source::Solid(color), blend_mode: BlendMode::SourceOver, opacity: 255, clip: None };
+        paint_coverage(simd, frame, cells, Coverage::Rect(rect), look, surface, (occlusion, visible));
+    }
 }
 
 /// Draws a finished layer onto the one below, or onto the target.

@@ -7,11 +7,10 @@ use super::band::{BandScratch, Frame};
 use super::coverage::{accumulate, rectangle};
 use super::kept::KeepSink;
 use super::occlusion::Occlusion;
-use crate::blend::BlendMode;
-use crate::display_list::{ClipId, Command, Draw, Geometry};
+use crate::display_list::{Command, Draw};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::fixed;
-use crate::raster::bins::Edges;
+use crate::raster::bins::{Content, Edges, Role};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 /// A shape with more edges in a band than so many for each block that its bounds could hold is not asked what it hides.
@@ -29,38 +28,41 @@ pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut Ban
         let Some(band) = chunk.band(frame.index) else { continue };
         for item in band.items.iter().rev() {
             place -= 1;
-            match frame.list.commands.get(item.command as usize) {
-                Some(Command::EndLayer(_) | Command::EndMask(..)) => depth += 1,
-                Some(Command::BeginLayer(_) | Command::BeginMask(_)) => depth = depth.saturating_sub(1),
-                Some(Command::Draw(draw)) if depth == 0 => {
-                    let edges = chunk.edges(band, *item);
-                    if !may_hide(frame, draw, edges.len(), place) {
-                        continue;
+            match item.role {
+                Role::Opaque if depth == 0 => {}
+                Role::Opaque | Role::Plain => continue,
+                Role::Bracket => {
+                    match frame.list.commands.get(item.command as usize) {
+                        Some(Command::EndLayer(_) | Command::EndMask(..)) => depth += 1,
+                        _ => depth = depth.saturating_sub(1),
                     }
-                    // Where little is hidden, the search costs more than it gains.
-                    if work > FAIR_TRIAL && scratch.occlusion.count() * WORK_PER_BLOCK < work || scratch.kept.is_full()
-                    {
-                        return;
-                    }
+                    continue;
+                }
+            }
+            // Where little is hidden, the search costs more than it gains.
+            if work > FAIR_TRIAL && scratch.occlusion.count() * WORK_PER_BLOCK < work || scratch.kept.is_full() {
+                return;
+            }
+            if let Content::Rect(rect, _) = item.content {
+                // Its coverage is found again as soon as it would be read.
+                if place > 0 {
+                    work += 1;
+                    claim_rect(frame, &mut scratch.occlusion, rect, place as u32);
+                }
+            } else if let Some(Command::Draw(draw)) = frame.list.commands.get(item.command as usize) {
+                let edges = chunk.edges(band, *item);
+                if may_hide(frame, draw, edges.len(), place) {
                     work += edges.len() + 1;
                     claim_blocks(simd, frame, scratch, draw, edges, place as u32);
                 }
-                _ => {}
             }
         }
     }
 }
 
-/// Whether a shape is worth a look: opaque, with room for whole blocks, and not mostly edges; the less so, the fewer
+/// Whether an opaque shape is worth a look: with room for whole blocks, and not mostly edges; the less so, the fewer
 /// items lie beneath it.
 fn may_hide(frame: &Frame<'_>, draw: &Draw, edges: usize, beneath: usize) -> bool {
-    let replaces = draw.opaque
-        && draw.clip == ClipId::NONE
-        && matches!(draw.blend_mode, BlendMode::SourceOver | BlendMode::Source)
-        && matches!(draw.geometry, Geometry::Fill { .. } | Geometry::Rect(_) | Geometry::Bounds);
-    if !replaces {
-        return false;
-    }
     let (top, bottom) = (draw.bounds.top.max(frame.top), draw.bounds.bottom.min(frame.top + frame.rows as i32));
     let across =
         draw.bounds.right / BLOCK_WIDTH as i32 - (draw.bounds.left + BLOCK_WIDTH as i32 - 1) / BLOCK_WIDTH as i32;
@@ -105,6 +107,7 @@ fn claim_blocks<S: Simd>(
 }
 
 /// Claims the blocks that a rectangle covers whole.
+#[inline(always)]
 fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, order: u32) {
     const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
     let (first, end) = ((rect.left.max(0) + BLOCK - 1) / BLOCK, rect.right.max(0) / BLOCK);

@@ -109,17 +109,21 @@ impl Occlusion {
         (seen_first, seen_end)
     }
 
-    /// The first of the blocks `start..end` that can be seen, with those right after it: from where to where.
+    /// The first of the blocks `start..end` that can be seen, with those right after it in its word: from where to where.
     #[inline(always)]
     pub(super) fn visible_run(&self, strip: usize, mut start: usize, end: usize) -> Option<(usize, usize)> {
-        while start < end && self.is_hidden(strip, start) {
-            start += 1;
+        while start < end {
+            let word = self.hidden.get(strip * self.words + start / 64).copied().unwrap_or(0);
+            let limit = end.min((start / 64 + 1) * 64);
+            let ones = |word: u64| word.trailing_ones() as usize;
+            let from = start + ones(word >> (start % 64));
+            if from < limit {
+                let run = ones(!word >> (from % 64));
+                return Some((from, limit.min(from + run)));
+            }
+            start = limit;
         }
-        let from = start;
-        while start < end && !self.is_hidden(strip, start) {
-            start += 1;
-        }
-        (from < start).then_some((from, start))
+        None
     }
 
     /// The shape at place `order` is about to be painted.
@@ -185,6 +189,9 @@ mod tests {
         occlusion.claim(3, 0, 60, 67);
         assert_eq!((occlusion.visible(0, bounds), occlusion.count()), ((1, 70), 10));
         assert!((0..70).all(|block| occlusion.is_hidden(0, block) == (60..67).contains(&block)));
+        assert_eq!((occlusion.visible_run(0, 3, 70), occlusion.visible_run(0, 60, 70)), (Some((3, 60)), Some((67, 70))));
+        assert_eq!((occlusion.visible_run(0, 60, 67), occlusion.visible_run(0, 68, 69)), (None, Some((68, 69))));
+        assert_eq!((occlusion.visible_run(1, 0, 70), occlusion.visible_run(1, 64, 70)), (Some((0, 64)), Some((64, 70))));
         occlusion.release(3);
         assert!(!occlusion.is_some() && occlusion.visible(1, bounds) == (1, 70));
     }

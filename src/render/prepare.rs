@@ -5,13 +5,15 @@ use std::ops::Range;
 use fearless_simd::Simd;
 
 use super::plan::Plan;
-use crate::display_list::{ClipKind, Command, DisplayList, Geometry};
-use crate::geom::{IntRect, Point, Rect};
+use crate::blend::BlendMode;
+use crate::display_list::{ClipId, ClipKind, Command, DisplayList, Draw, Geometry};
+use crate::geom::{FixedRect, IntRect, Point, Rect};
 use crate::num::level::{SimdLevel, dispatch};
+use crate::paint::PreparedPaint;
 use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
 use crate::path::stroke::{StrokeScratch, stroke};
-use crate::raster::bins::{BandItem, BandList, EdgeBins, Edges};
+use crate::raster::bins::{BandItem, BandList, EdgeBins, Edges, Role};
 use crate::style::Antialias;
 
 /// The edges of a range of commands. Chunks are prepared independently of each other; a band reads them
@@ -70,23 +72,31 @@ impl Chunk {
             let number = index as u32;
             match command {
                 Command::Draw(draw) => {
-                    self.shape(simd, list, number, &draw.geometry, draw.antialias, draw.bounds, frame)
+                    let role = role(draw);
+                    match solid_rect(list, draw) {
+                        Some((rect, color)) => self.bins.list_rect(number, role, rect.intersect(frame), color),
+                        None => {
+                            let (antialias, bounds) = (draw.antialias, draw.bounds);
+                            self.shape(simd, list, (number, role), &draw.geometry, antialias, bounds, frame);
+                        }
+                    }
                 }
                 Command::Clip(id) => {
                     if let Some(clip) = list.clip(*id)
                         && let ClipKind::Geometry { geometry, antialias } = &clip.kind
                     {
-                        self.shape(simd, list, number, geometry, *antialias, clip.bounds, frame);
+                        let item = (number, Role::Plain);
+                        self.shape(simd, list, item, geometry, *antialias, clip.bounds, frame);
                     }
                 }
-                Command::BeginLayer(layer) => self.bins.list(number, layer.bounds.intersect(frame)),
-                Command::EndLayer(layer) => self.bins.list(number, layer.bounds.intersect(frame)),
+                Command::BeginLayer(layer) => self.bins.list(number, Role::Bracket, layer.bounds.intersect(frame)),
+                Command::EndLayer(layer) => self.bins.list(number, Role::Bracket, layer.bounds.intersect(frame)),
                 Command::BeginMask(bounds) | Command::EndMask(bounds, _) => {
-                    self.bins.list(number, bounds.intersect(frame));
+                    self.bins.list(number, Role::Bracket, bounds.intersect(frame));
                 }
                 Command::Effect(_) => {
                     if let Some(picture) = plan.picture(number) {
-                        self.bins.list(number, picture.bounds.intersect(frame));
+                        self.bins.list(number, Role::Plain, picture.bounds.intersect(frame));
                     }
                 }
             }
@@ -99,7 +109,7 @@ impl Chunk {
         &mut self,
         simd: S,
         list: &DisplayList,
-        number: u32,
+        item: (u32, Role),
         geometry: &Geometry,
         antialias: Antialias,
         bounds: IntRect,
@@ -136,12 +146,40 @@ impl Chunk {
                 rectangle(rect.intersect(bounds).to_rect(), &mut self.polygons);
             }
             Geometry::Rect(_) | Geometry::Bounds | Geometry::Spans(_) => {
-                self.bins.list(number, bounds);
+                self.bins.list(item.0, item.1, bounds);
                 return;
             }
         }
         let prove = antialias == Antialias::Exact;
-        self.bins.add(simd, number, &self.polygons, bounds, bounds.right >= frame.right, prove);
+        self.bins.add(simd, item, &self.polygons, bounds, bounds.right >= frame.right, prove);
+    }
+}
+
+/// What a draw may mean for those before it.
+#[inline(always)]
+fn role(draw: &Draw) -> Role {
+    let hides = draw.opaque
+        && draw.clip == ClipId::NONE
+        && matches!(draw.blend_mode, BlendMode::SourceOver | BlendMode::Source)
+        && matches!(draw.geometry, Geometry::Fill { .. } | Geometry::Rect(_) | Geometry::Bounds);
+    if hides { Role::Opaque } else { Role::Plain }
+}
+
+/// What a draw covers and in which colour, if it is a rectangle, in one colour, over what is there.
+#[inline(always)]
+fn solid_rect(list: &DisplayList, draw: &Draw) -> Option<(FixedRect, [u8; 4])> {
+    let over = draw.blend_mode == BlendMode::SourceOver || draw.blend_mode == BlendMode::Source && draw.opaque;
+    if draw.clip != ClipId::NONE || !over {
+        return None;
+    }
+    let rect = match draw.geometry {
+        Geometry::Rect(rect) if is_exact(draw.antialias) => rect.intersect(draw.bounds),
+        Geometry::Bounds => FixedRect::of_pixels(draw.bounds),
+        _ => return None,
+    };
+    match list.paints.get(draw.paint as usize) {
+        Some(PreparedPaint::Solid(color)) => Some((rect, *color)),
+        _ => None,
     }
 }
 
