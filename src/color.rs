@@ -61,7 +61,7 @@ impl Color {
     /// The premultiplied components in 0 ..= 255: each is rounded once, after the multiplication.
     pub fn premultiply(self) -> [u8; 4] {
         let a = unit(self.a);
-        [to_u8(unit(self.r) * a), to_u8(unit(self.g) * a), to_u8(unit(self.b) * a), to_u8(a)]
+        [unit(self.r) * a, unit(self.g) * a, unit(self.b) * a, a].map(byte)
     }
 }
 
@@ -71,7 +71,12 @@ pub(crate) fn unit(v: f32) -> f32 {
 }
 
 fn to_u8(v: f32) -> u8 {
-    (unit(v) * 255.0 + 0.5) as u8
+    byte(unit(v))
+}
+
+/// `v`, in 0 ..= 1, in 0 ..= 255.
+fn byte(v: f32) -> u8 {
+    (v * 255.0 + 0.5) as u8
 }
 
 /// Straight to premultiplied, rounded to nearest.

@@ -135,7 +135,7 @@ pub mod svg;
 pub use blend::BlendMode;
 pub use canvas::{Canvas, LayerOptions, SaveGuard, Shadow};
 pub use color::Color;
-pub use display_list::{ImagePaint, Paint};
+pub use display_list::{ImagePaint, Paint, ToPaint};
 pub use error::{Error, Result};
 pub use fearless_simd;
 pub use geom::{IntRect, Point, Rect, Transform};

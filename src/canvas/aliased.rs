@@ -1,7 +1,7 @@
 //! Aliased primitives on the canvas: whole pixels, without the transform.
 
 use super::Canvas;
-use crate::display_list::{Geometry, Paint, Span};
+use crate::display_list::{Geometry, Paint, Span, ToPaint};
 use crate::geom::{IntRect, Point};
 use crate::num::level::{SimdLevel, dispatch};
 use crate::path::flatten::{PolygonSink, flatten_fill};
@@ -13,48 +13,48 @@ use crate::style::FillRule;
 /// transform does not matter; clips, layers, paints and blend modes do. A pixel that a call meets twice is painted once.
 impl Canvas<'_> {
     /// Paints the pixels of a Bresenham line, both ends included. See [`raster::line::bresenham`](line::bresenham).
-    pub fn draw_pixel_line(&mut self, from: (i32, i32), to: (i32, i32), paint: impl Into<Paint>) {
-        self.draw_pixels(paint.into(), |clip, out| out.extend(line::bresenham(from, to).clipped(clip)));
+    pub fn draw_pixel_line(&mut self, from: (i32, i32), to: (i32, i32), paint: impl ToPaint) {
+        self.draw_pixels(&paint.to_paint(), |clip, out| out.extend(line::bresenham(from, to).clipped(clip)));
     }
 
     /// Paints every pixel that a line between two pixels' centres touches. See
     /// [`raster::line::supercover`](line::supercover).
-    pub fn draw_supercover_line(&mut self, from: (i32, i32), to: (i32, i32), paint: impl Into<Paint>) {
-        self.draw_pixels(paint.into(), |clip, out| out.extend(line::supercover(from, to).clipped(clip)));
+    pub fn draw_supercover_line(&mut self, from: (i32, i32), to: (i32, i32), paint: impl ToPaint) {
+        self.draw_pixels(&paint.to_paint(), |clip, out| out.extend(line::supercover(from, to).clipped(clip)));
     }
 
     /// Paints an open chain of Bresenham lines. See [`raster::line::polyline`](line::polyline).
-    pub fn draw_pixel_polyline(&mut self, points: &[(i32, i32)], paint: impl Into<Paint>) {
-        self.draw_pixels(paint.into(), |clip, out| out.extend(line::polyline(points).clipped(clip)));
+    pub fn draw_pixel_polyline(&mut self, points: &[(i32, i32)], paint: impl ToPaint) {
+        self.draw_pixels(&paint.to_paint(), |clip, out| out.extend(line::polyline(points).clipped(clip)));
     }
 
     /// Paints a polygon's outline of Bresenham lines. See [`raster::line::outline`](line::outline).
-    pub fn draw_pixel_polygon(&mut self, points: &[(i32, i32)], paint: impl Into<Paint>) {
-        self.draw_pixels(paint.into(), |clip, out| out.extend(line::outline(points).clipped(clip)));
+    pub fn draw_pixel_polygon(&mut self, points: &[(i32, i32)], paint: impl ToPaint) {
+        self.draw_pixels(&paint.to_paint(), |clip, out| out.extend(line::outline(points).clipped(clip)));
     }
 
     /// Paints the pixels of a midpoint circle. See [`raster::circle::circle`](circle::circle).
-    pub fn draw_pixel_circle(&mut self, center: (i32, i32), radius: u32, paint: impl Into<Paint>) {
-        self.draw_pixels(paint.into(), |clip, out| out.extend(circle::circle(center, radius).clipped(clip)));
+    pub fn draw_pixel_circle(&mut self, center: (i32, i32), radius: u32, paint: impl ToPaint) {
+        self.draw_pixels(&paint.to_paint(), |clip, out| out.extend(circle::circle(center, radius).clipped(clip)));
     }
 
     /// Paints the pixels of a midpoint circle and those inside it. See
     /// [`raster::circle::filled_circle`](circle::filled_circle).
-    pub fn fill_pixel_circle(&mut self, center: (i32, i32), radius: u32, paint: impl Into<Paint>) {
-        self.draw_spans(paint.into(), |clip, out| {
+    pub fn fill_pixel_circle(&mut self, center: (i32, i32), radius: u32, paint: impl ToPaint) {
+        self.draw_spans(&paint.to_paint(), |clip, out| {
             out.extend(circle::filled_circle(center, radius).clipped(clip).map(span));
         });
     }
 
     /// Paints the pixels whose centre lies inside a polygon. See [`raster::polygon::fill`](polygon::fill). This is also what
     /// [`fill_polygon`](Self::fill_polygon) gives with [`Antialias::None`](crate::Antialias::None) and no transform.
-    pub fn fill_pixel_polygon(&mut self, points: &[Point], rule: FillRule, paint: impl Into<Paint>) {
-        self.draw_spans(paint.into(), |clip, out| {
+    pub fn fill_pixel_polygon(&mut self, points: &[Point], rule: FillRule, paint: impl ToPaint) {
+        self.draw_spans(&paint.to_paint(), |clip, out| {
             polygon::fill(points, rule, clip, |y, columns| out.push(span((y, columns))));
         });
     }
 
-    fn draw_pixels(&mut self, paint: Paint, pixels: impl Fn(IntRect, &mut Vec<(i32, i32)>)) {
+    fn draw_pixels(&mut self, paint: &Paint, pixels: impl Fn(IntRect, &mut Vec<(i32, i32)>)) {
         self.draw_spans(paint, |clip, out| {
             let mut list = Vec::new();
             pixels(clip, &mut list);
@@ -62,7 +62,7 @@ impl Canvas<'_> {
         });
     }
 
-    fn draw_spans(&mut self, paint: Paint, spans: impl Fn(IntRect, &mut Vec<Span>)) {
+    fn draw_spans(&mut self, paint: &Paint, spans: impl Fn(IntRect, &mut Vec<Span>)) {
         self.draw(paint, |canvas| {
             let mut list = Vec::new();
             let (dx, dy) = canvas.state.origin();

@@ -3,7 +3,7 @@
 use super::Canvas;
 use crate::blend::BlendMode;
 use crate::color::Color;
-use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, Paint, Span};
+use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, Paint, Span, ToPaint};
 use crate::filter::pixels;
 use crate::geom::{FixedRect, IntRect, Point, Rect, Transform};
 use crate::paint::PreparedPaint;
@@ -22,32 +22,32 @@ impl Canvas<'_> {
     }
 
     /// Paints every pixel within the clip.
-    pub fn fill(&mut self, paint: impl Into<Paint>) {
-        self.draw(paint.into(), |canvas| Some((Geometry::Bounds, canvas.state.bounds)));
+    pub fn fill(&mut self, paint: impl ToPaint) {
+        self.draw(&paint.to_paint(), |canvas| Some((Geometry::Bounds, canvas.state.bounds)));
     }
 
     /// Fills the inside of a path.
-    pub fn fill_path(&mut self, path: &Path, rule: FillRule, paint: impl Into<Paint>) {
-        self.draw(paint.into(), |canvas| canvas.record_fill(path, rule));
+    pub fn fill_path(&mut self, path: &Path, rule: FillRule, paint: impl ToPaint) {
+        self.draw(&paint.to_paint(), |canvas| canvas.record_fill(path, rule));
     }
 
     /// Strokes a path.
-    pub fn stroke_path(&mut self, path: &Path, stroke: &Stroke, paint: impl Into<Paint>) {
-        let paint = paint.into();
+    pub fn stroke_path(&mut self, path: &Path, stroke: &Stroke, paint: impl ToPaint) {
+        let paint = paint.to_paint();
         if stroke.width == 0.0 && paint.antialias == Antialias::None && stroke.dash.is_none() {
-            self.draw(paint, |canvas| canvas.record_pixel_outline(path));
+            self.draw(&paint, |canvas| canvas.record_pixel_outline(path));
         } else {
-            self.draw(paint, |canvas| canvas.record_stroke(path, stroke));
+            self.draw(&paint, |canvas| canvas.record_stroke(path, stroke));
         }
     }
 
     /// Fills a rectangle; one with negative width or height as if its edges were swapped.
-    pub fn fill_rect(&mut self, rect: Rect, paint: impl Into<Paint>) {
-        self.draw(paint.into(), |canvas| canvas.record_rect(rect));
+    pub fn fill_rect(&mut self, rect: Rect, paint: impl ToPaint) {
+        self.draw(&paint.to_paint(), |canvas| canvas.record_rect(rect));
     }
 
     /// Strokes a rectangle's outline.
-    pub fn stroke_rect(&mut self, rect: Rect, stroke: &Stroke, paint: impl Into<Paint>) {
+    pub fn stroke_rect(&mut self, rect: Rect, stroke: &Stroke, paint: impl ToPaint) {
         let mut path = self.take_scratch();
         path.rect(rect);
         self.stroke_path(&path, stroke, paint);
@@ -62,7 +62,7 @@ impl Canvas<'_> {
     }
 
     /// Fills a rectangle with rounded corners.
-    pub fn fill_round_rect(&mut self, rect: Rect, radii: impl Into<Radii>, paint: impl Into<Paint>) {
+    pub fn fill_round_rect(&mut self, rect: Rect, radii: impl Into<Radii>, paint: impl ToPaint) {
         let mut path = self.take_scratch();
         path.round_rect(rect, radii);
         self.fill_path(&path, FillRule::NonZero, paint);
@@ -70,7 +70,7 @@ impl Canvas<'_> {
     }
 
     /// Strokes a rectangle with rounded corners.
-    pub fn stroke_round_rect(&mut self, rect: Rect, radii: impl Into<Radii>, stroke: &Stroke, paint: impl Into<Paint>) {
+    pub fn stroke_round_rect(&mut self, rect: Rect, radii: impl Into<Radii>, stroke: &Stroke, paint: impl ToPaint) {
         let mut path = self.take_scratch();
         path.round_rect(rect, radii);
         self.stroke_path(&path, stroke, paint);
@@ -78,17 +78,17 @@ impl Canvas<'_> {
     }
 
     /// Fills a circle.
-    pub fn fill_circle(&mut self, center: impl Into<Point>, radius: f32, paint: impl Into<Paint>) {
+    pub fn fill_circle(&mut self, center: impl Into<Point>, radius: f32, paint: impl ToPaint) {
         self.fill_ellipse(center, radius, radius, paint);
     }
 
     /// Strokes a circle.
-    pub fn stroke_circle(&mut self, center: impl Into<Point>, radius: f32, stroke: &Stroke, paint: impl Into<Paint>) {
+    pub fn stroke_circle(&mut self, center: impl Into<Point>, radius: f32, stroke: &Stroke, paint: impl ToPaint) {
         self.stroke_ellipse(center, radius, radius, stroke, paint);
     }
 
     /// Fills an ellipse with the given horizontal and vertical radius.
-    pub fn fill_ellipse(&mut self, center: impl Into<Point>, radius_x: f32, radius_y: f32, paint: impl Into<Paint>) {
+    pub fn fill_ellipse(&mut self, center: impl Into<Point>, radius_x: f32, radius_y: f32, paint: impl ToPaint) {
         let mut path = self.take_scratch();
         path.ellipse(center, radius_x, radius_y);
         self.fill_path(&path, FillRule::NonZero, paint);
@@ -102,7 +102,7 @@ impl Canvas<'_> {
         radius_x: f32,
         radius_y: f32,
         stroke: &Stroke,
-        paint: impl Into<Paint>,
+        paint: impl ToPaint,
     ) {
         let mut path = self.take_scratch();
         path.ellipse(center, radius_x, radius_y);
@@ -116,7 +116,7 @@ impl Canvas<'_> {
         from: impl Into<Point>,
         to: impl Into<Point>,
         stroke: &Stroke,
-        paint: impl Into<Paint>,
+        paint: impl ToPaint,
     ) {
         let mut path = self.take_scratch();
         path.move_to(from).line_to(to);
@@ -125,7 +125,7 @@ impl Canvas<'_> {
     }
 
     /// Strokes an open chain of lines.
-    pub fn draw_polyline(&mut self, points: &[Point], stroke: &Stroke, paint: impl Into<Paint>) {
+    pub fn draw_polyline(&mut self, points: &[Point], stroke: &Stroke, paint: impl ToPaint) {
         let mut path = self.take_scratch();
         path.polyline(points);
         self.stroke_path(&path, stroke, paint);
@@ -133,7 +133,7 @@ impl Canvas<'_> {
     }
 
     /// Fills a polygon; it is closed by a line from its last to its first point.
-    pub fn fill_polygon(&mut self, points: &[Point], rule: FillRule, paint: impl Into<Paint>) {
+    pub fn fill_polygon(&mut self, points: &[Point], rule: FillRule, paint: impl ToPaint) {
         let mut path = self.take_scratch();
         path.polygon(points);
         self.fill_path(&path, rule, paint);
@@ -141,7 +141,7 @@ impl Canvas<'_> {
     }
 
     /// Strokes a closed polygon.
-    pub fn stroke_polygon(&mut self, points: &[Point], stroke: &Stroke, paint: impl Into<Paint>) {
+    pub fn stroke_polygon(&mut self, points: &[Point], stroke: &Stroke, paint: impl ToPaint) {
         let mut path = self.take_scratch();
         path.polygon(points);
         self.stroke_path(&path, stroke, paint);
@@ -159,14 +159,14 @@ impl Canvas<'_> {
     }
 
     /// Records what `geometry` records, with its shadow before it.
-    pub(super) fn draw(&mut self, paint: Paint, geometry: impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>) {
+    pub(super) fn draw(&mut self, paint: &Paint, geometry: impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>) {
         let mut geometry = geometry;
         if self.state.bounds.is_empty() || paint.blend_mode == BlendMode::Destination {
             return;
         }
-        let shadow = self.state.shadow.map_or(0, |shadow| self.draw_shadow(shadow, &paint, &mut geometry));
+        let shadow = self.state.shadow.map_or(0, |shadow| self.draw_shadow(shadow, paint, &mut geometry));
         if let Some((geometry, bounds)) = geometry(self) {
-            self.record(&paint, geometry, bounds);
+            self.record(paint, geometry, bounds);
         }
         if shadow > 0 {
             self.count_pictures(shadow);
@@ -231,7 +231,7 @@ impl Canvas<'_> {
             extent = bounds.intersect(reach);
             self.move_geometry(&mut geometry, -extent.left, -extent.top);
             let shift = Transform::from_translate(-(extent.left as f32), -(extent.top as f32));
-            self.state.to_list = outer.to_list.post_concat(shift);
+            self.state.move_list(shift);
             self.state.bounds = IntRect::from_xywh(0, 0, extent.width(), extent.height());
             let plain = Paint { blend_mode: BlendMode::SourceOver, ..paint.clone() };
             self.record(&plain, geometry, self.state.bounds);

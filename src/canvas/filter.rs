@@ -142,7 +142,8 @@ impl Canvas<'_> {
         self.open_layer(OpenLayerKind::Filter(Box::new(layer)));
         self.list = DisplayList::default();
         let shift = Transform::from_translate(-(extent.left as f32), -(extent.top as f32));
-        self.state.to_list = self.state.to_list.post_concat(to_grid).post_concat(shift);
+        self.state.move_list(to_grid);
+        self.state.move_list(shift);
         self.state.bounds = IntRect::from_xywh(0, 0, extent.width(), extent.height());
         self.state.clip = ClipId::NONE;
         self.state.shadow = None;

@@ -27,8 +27,8 @@ pub struct Shadow {
 pub(super) struct State {
     /// From user space to device pixels.
     pub(super) transform: Transform,
-    /// From device pixels to those of the recording, which differ where it is for an effect's own picture.
-    pub(super) to_list: Transform,
+    /// From device pixels to those of the recording, if they differ: where it is for an effect's own picture.
+    to_list: Option<Transform>,
     pub(super) clip: ClipId,
     /// The recording's pixels that the clip can let through.
     pub(super) bounds: IntRect,
@@ -39,7 +39,7 @@ impl Default for State {
     fn default() -> Self {
         Self {
             transform: Transform::IDENTITY,
-            to_list: Transform::IDENTITY,
+            to_list: None,
             clip: ClipId::NONE,
             bounds: IntRect::EMPTY,
             shadow: None,
@@ -50,10 +50,8 @@ impl Default for State {
 impl State {
     /// From user space to the recording's pixels.
     pub(super) fn to_pixels(self) -> Transform {
-        if self.to_list.is_identity() {
-            return self.transform;
-        }
-        let mut all = self.to_list.pre_concat(self.transform);
+        let Some(to_list) = self.to_list else { return self.transform };
+        let mut all = to_list.pre_concat(self.transform);
         // Turned there and back again, what is left of a turn is rounding.
         let least = (all.sx.abs() + all.sy.abs()) * 1e-6;
         if all.kx.abs() < least && all.ky.abs() < least {
@@ -64,7 +62,12 @@ impl State {
 
     /// How far the recording's pixels lie from the device's, where no effect turns them.
     pub(super) fn origin(&self) -> (i32, i32) {
-        (self.to_list.tx as i32, self.to_list.ty as i32)
+        self.to_list.map_or((0, 0), |to_list| (to_list.tx as i32, to_list.ty as i32))
+    }
+
+    /// Moves, scales and turns the recording's pixels.
+    pub(super) fn move_list(&mut self, then: Transform) {
+        self.to_list = Some(self.to_list.unwrap_or(Transform::IDENTITY).post_concat(then));
     }
 }
 
@@ -262,10 +265,8 @@ impl<'a> Canvas<'a> {
 
     /// The device pixels that the current clip can let through.
     pub fn clip_bounds(&self) -> IntRect {
-        if self.state.to_list.is_identity() {
-            return self.state.bounds;
-        }
-        let back = self.state.to_list.invert().and_then(|back| back.map_rect(self.state.bounds.to_rect()));
+        let Some(to_list) = self.state.to_list else { return self.state.bounds };
+        let back = to_list.invert().and_then(|back| back.map_rect(self.state.bounds.to_rect()));
         back.map_or(IntRect::EMPTY, |bounds| bounds.round_out())
     }
 

@@ -6,4 +6,4 @@ mod paint;
 pub(crate) use command::{
     ClipId, ClipKind, ClipNode, Command, DisplayList, Draw, Effect, EffectKind, Geometry, LayerStart, Span,
 };
-pub use paint::{ImagePaint, Paint};
+pub use paint::{ImagePaint, Paint, ToPaint};

@@ -1,5 +1,7 @@
 //! The paint of a drawing call: what colour, how it blends, how edges are treated.
 
+use std::borrow::Cow;
+
 use crate::blend::BlendMode;
 use crate::color::Color;
 use crate::paint::{FilterQuality, LinearGradient, Pattern, RadialGradient, Shader, SweepGradient};
@@ -7,8 +9,7 @@ use crate::style::Antialias;
 
 /// How a shape is coloured.
 ///
-/// Every drawing call takes `impl Into<Paint>`: a [`Color`] or a gradient will do where the defaults
-/// suit.
+/// Drawing calls take whatever is [`ToPaint`]: a [`Color`] or a gradient will do where the defaults suit.
 #[derive(Clone, Debug)]
 pub struct Paint {
     /// What colour each pixel gets. The default is opaque black.
@@ -52,47 +53,56 @@ impl Paint {
     }
 }
 
-impl From<&Paint> for Paint {
-    fn from(paint: &Paint) -> Self {
-        paint.clone()
+/// What a drawing call takes as its paint: a [`Color`], a gradient, a [`Pattern`] or a [`Shader`] where the other defaults
+/// suit, a [`Paint`], or a reference to any of them. A reference to a paint is read where it is.
+///
+/// ```
+/// use rastrum::{Canvas, Color, Paint, Rect};
+///
+/// let mut canvas = Canvas::new(8, 8)?;
+/// let paint = Paint::new(Color::RED).with_opacity(0.5);
+/// canvas.fill_rect(Rect::from_xywh(0.0, 0.0, 4.0, 4.0), &paint);
+/// canvas.fill_rect(Rect::from_xywh(4.0, 4.0, 4.0, 4.0), Color::BLUE);
+/// let picture = canvas.into_pixmap();
+/// assert_eq!((picture.pixel(1, 1), picture.pixel(6, 6)), (Some([128, 0, 0, 128]), Some([0, 0, 255, 255])));
+/// # Ok::<(), rastrum::Error>(())
+/// ```
+pub trait ToPaint {
+    /// The paint.
+    fn to_paint(&self) -> Cow<'_, Paint>;
+}
+
+impl ToPaint for Paint {
+    fn to_paint(&self) -> Cow<'_, Paint> {
+        Cow::Borrowed(self)
     }
 }
 
-impl From<Shader> for Paint {
-    fn from(shader: Shader) -> Self {
-        Self::new(shader)
+impl<T: ToPaint + ?Sized> ToPaint for &T {
+    fn to_paint(&self) -> Cow<'_, Paint> {
+        (**self).to_paint()
     }
 }
 
-impl From<Color> for Paint {
-    fn from(color: Color) -> Self {
-        Self::new(color)
-    }
+macro_rules! paint_from {
+    ($($shader:ty),*) => {
+        $(
+            impl From<$shader> for Paint {
+                fn from(shader: $shader) -> Self {
+                    Self::new(shader)
+                }
+            }
+
+            impl ToPaint for $shader {
+                fn to_paint(&self) -> Cow<'_, Paint> {
+                    Cow::Owned(Paint::new(self.clone()))
+                }
+            }
+        )*
+    };
 }
 
-impl From<LinearGradient> for Paint {
-    fn from(gradient: LinearGradient) -> Self {
-        Self::new(gradient)
-    }
-}
-
-impl From<RadialGradient> for Paint {
-    fn from(gradient: RadialGradient) -> Self {
-        Self::new(gradient)
-    }
-}
-
-impl From<SweepGradient> for Paint {
-    fn from(gradient: SweepGradient) -> Self {
-        Self::new(gradient)
-    }
-}
-
-impl From<Pattern> for Paint {
-    fn from(pattern: Pattern) -> Self {
-        Self::new(pattern)
-    }
-}
+paint_from!(Shader, Color, LinearGradient, RadialGradient, SweepGradient, Pattern);
 
 /// How an image is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
