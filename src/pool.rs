@@ -12,6 +12,10 @@ pub(crate) fn threads(wanted: usize) -> usize {
 #[cfg(feature = "parallel")]
 pub(crate) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) + Sync) {
     use std::sync::Mutex;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// How often helpers were called: those that linger see that they are wanted.
+    static CALLS: AtomicUsize = AtomicUsize::new(0);
 
     let helpers = threads.min(jobs.len()).saturating_sub(1);
     let pool = if helpers > 0 { pool(threads - 1) } else { None };
@@ -25,12 +29,33 @@ pub(crate) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) +
             work(job);
         }
     };
+    let call = CALLS.fetch_add(1, Ordering::Relaxed) + 1;
+    let done = AtomicUsize::new(0);
     pool.in_place_scope(|scope| {
         for _ in 0..helpers {
-            scope.spawn(|_| run());
+            scope.spawn(|_| {
+                run();
+                done.fetch_add(1, Ordering::Release);
+                // A frame calls twice in a row.
+                rayon::spawn(move || linger(|| CALLS.load(Ordering::Relaxed) != call));
+            });
         }
         run();
+        linger(|| done.load(Ordering::Acquire) == helpers);
     });
+}
+
+/// Waits awake until `ready` says so, for as long as it would take to fall asleep and be woken: 50 µs. A picture of a
+/// millisecond has three such moments.
+#[cfg(feature = "parallel")]
+fn linger(ready: impl Fn() -> bool) {
+    use std::time::{Duration, Instant};
+
+    const LONGEST: Duration = Duration::from_micros(50);
+    let start = Instant::now();
+    while !ready() && start.elapsed() < LONGEST {
+        std::hint::spin_loop();
+    }
 }
 
 /// Runs `work` on every job.
