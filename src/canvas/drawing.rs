@@ -111,13 +111,7 @@ impl Canvas<'_> {
     }
 
     /// Strokes a line.
-    pub fn draw_line(
-        &mut self,
-        from: impl Into<Point>,
-        to: impl Into<Point>,
-        stroke: &Stroke,
-        paint: impl ToPaint,
-    ) {
+    pub fn draw_line(&mut self, from: impl Into<Point>, to: impl Into<Point>, stroke: &Stroke, paint: impl ToPaint) {
         let mut path = self.take_scratch();
         path.move_to(from).line_to(to);
         self.stroke_path(&path, stroke, paint);

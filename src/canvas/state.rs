@@ -37,13 +37,7 @@ pub(super) struct State {
 
 impl Default for State {
     fn default() -> Self {
-        Self {
-            transform: Transform::IDENTITY,
-            to_list: None,
-            clip: ClipId::NONE,
-            bounds: IntRect::EMPTY,
-            shadow: None,
-        }
+        Self { transform: Transform::IDENTITY, to_list: None, clip: ClipId::NONE, bounds: IntRect::EMPTY, shadow: None }
     }
 }
 

@@ -235,7 +235,7 @@ impl EdgeBins {
                     append_closed(simd, polygon, &mut self.outline);
                     self.ends.push(self.outline.len());
                 }
-                let proof = Proof::new(&mut self.simplicity, &self.outline, &self.ends, &mut self.crossed);
+                let proof = Proof::new(simd, &mut self.simplicity, &self.outline, &self.ends, &mut self.crossed);
                 self.add_cut((command, role), polygons, clip, open_right, proof);
             }
             _ => self.add_cut((command, role), polygons, clip, open_right, Proof::default()),
@@ -244,7 +244,15 @@ impl EdgeBins {
 
     /// Lists polygons that lie between `top` and `bottom` (fixed point) and need no clipping.
     #[inline(always)]
-    fn add_inside<S: Simd>(&mut self, simd: S, (command, role): (u32, Role), polygons: &Polygons, top: i32, bottom: i32, prove: bool) {
+    fn add_inside<S: Simd>(
+        &mut self,
+        simd: S,
+        (command, role): (u32, Role),
+        polygons: &Polygons,
+        top: i32,
+        bottom: i32,
+        prove: bool,
+    ) {
         if top == bottom || u32::try_from(self.points.len() + 2 * polygons.points().len()).is_err() {
             return;
         }
@@ -269,7 +277,7 @@ impl EdgeBins {
         let corners = self.points.get(first..).unwrap_or(&[]);
         let mut proof = Proof::default();
         if prove {
-            proof = Proof::new(&mut self.simplicity, corners, &self.ends, &mut self.crossed);
+            proof = Proof::new(simd, &mut self.simplicity, corners, &self.ends, &mut self.crossed);
         }
         let mut empty = true;
         for (number, band) in (first_band..).zip(bands) {
@@ -282,7 +290,14 @@ impl EdgeBins {
 
     /// Lists polygons that may leave the clip.
     #[inline(never)]
-    fn add_cut(&mut self, (command, role): (u32, Role), polygons: &Polygons, clip: IntRect, open_right: bool, proof: Proof) {
+    fn add_cut(
+        &mut self,
+        (command, role): (u32, Role),
+        polygons: &Polygons,
+        clip: IntRect,
+        open_right: bool,
+        proof: Proof,
+    ) {
         let Self { points, bands, band_shift, crossed, .. } = self;
         let Some(bands) = touched(bands, clip.top << fixed::SHIFT, clip.bottom << fixed::SHIFT, *band_shift) else {
             return;
@@ -327,9 +342,15 @@ struct Proof(Option<(usize, usize)>);
 
 impl Proof {
     /// Looks where outlines cross, and lists the strips.
-    fn new(simplicity: &mut Simplicity, points: &[FixedPoint], ends: &[usize], crossed: &mut Vec<i32>) -> Self {
+    fn new<S: Simd>(
+        simd: S,
+        simplicity: &mut Simplicity,
+        points: &[FixedPoint],
+        ends: &[usize],
+        crossed: &mut Vec<i32>,
+    ) -> Self {
         let start = crossed.len();
-        Self(simplicity.crossed_strips(points, ends).map(|strips| {
+        Self(simplicity.crossed_strips(simd, points, ends).map(|strips| {
             crossed.extend_from_slice(strips);
             (start, crossed.len())
         }))

@@ -15,6 +15,7 @@
 //! assert_eq!(grid, [*b"##......", *b"..####..", *b"......##"]);
 //! ```
 
+mod apart;
 pub(crate) mod batch;
 pub(crate) mod bins;
 pub(crate) mod cell;

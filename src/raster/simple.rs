@@ -7,6 +7,9 @@
 //! (Shamos and Hoey, *Geometric intersection problems*, 1976, with sides for segments). Where that fails, the strip is noted and the
 //! order found anew at its end. Arithmetic is in integers, and the shape alone decides, not how it is cut into bands.
 
+use fearless_simd::Simd;
+
+use super::apart::{Apart, is_quicker};
 use super::edge::FixedPoint;
 use super::kernel::STRIP_SHIFT;
 
@@ -44,6 +47,7 @@ struct Active {
 /// The search's working memory.
 #[derive(Debug, Default)]
 pub(super) struct Simplicity {
+    apart: Apart,
     sides: Vec<Side>,
     active: Vec<Active>,
     crossed: Vec<i32>,
@@ -54,7 +58,22 @@ impl Simplicity {
     /// the same way: their numbers from 0 for that below y = 0, going up. `None` where the search is given up. Each outline's last
     /// corner is its first; `ends` says where they end.
     #[inline(never)]
-    pub(super) fn crossed_strips(&mut self, points: &[FixedPoint], ends: &[usize]) -> Option<&[i32]> {
+    pub(super) fn crossed_strips<S: Simd>(&mut self, simd: S, points: &[FixedPoint], ends: &[usize]) -> Option<&[i32]> {
+        let apart = &mut self.apart;
+        let wind_once = simd.vectorize(
+            #[inline(always)]
+            || is_quicker(points) && apart.wind_once(simd, points, ends),
+        );
+        if wind_once {
+            self.crossed.clear();
+            return Some(&self.crossed);
+        }
+        self.sweep_outlines(points, ends)
+    }
+
+    /// As [`crossed_strips`](Self::crossed_strips), by the sweep alone.
+    #[inline(never)]
+    fn sweep_outlines(&mut self, points: &[FixedPoint], ends: &[usize]) -> Option<&[i32]> {
         self.sides.clear();
         let mut start = 0;
         for end in ends {
@@ -111,7 +130,7 @@ impl Simplicity {
 
     /// From top to bottom; `None` where the search is given up.
     fn sweep(&mut self, points: &[FixedPoint]) -> Option<()> {
-        let Self { sides, active, crossed } = self;
+        let Self { sides, active, crossed, .. } = self;
         sides.sort_unstable_by_key(|side| (side.from.y, side.from.x));
         active.clear();
         crossed.clear();
@@ -339,6 +358,7 @@ impl Side {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
 
     type Outline = Vec<(i32, i32)>;
 
@@ -348,7 +368,29 @@ mod tests {
             points.extend(outline.iter().chain(outline.first()).map(|(x, y)| FixedPoint { x: *x, y: *y }));
             ends.push(points.len());
         }
-        Simplicity::default().crossed_strips(&points, &ends).map(<[i32]>::to_vec)
+        let found = dispatch!(SimdLevel::best(), simd => {
+            Simplicity::default().crossed_strips(simd, &points, &ends).map(<[i32]>::to_vec)
+        });
+        // Without the quick proof, more strips at most.
+        let mut simplicity = Simplicity::default();
+        let swept = simplicity.sweep_outlines(&points, &ends);
+        assert!(found.iter().flatten().all(|strip| swept.is_none_or(|swept| swept.contains(strip))), "{outlines:?}");
+        found
+    }
+
+    /// Whether the quick proof is found.
+    fn are_apart(outlines: &[Outline]) -> bool {
+        let (mut points, mut ends) = (Vec::new(), Vec::new());
+        for outline in outlines {
+            points.extend(outline.iter().chain(outline.first()).map(|(x, y)| FixedPoint { x: *x, y: *y }));
+            ends.push(points.len());
+        }
+        let found = SimdLevel::available()
+            .into_iter()
+            .map(|level| dispatch!(level, simd => Apart::default().wind_once(simd, &points, &ends)));
+        let found: Vec<bool> = found.collect();
+        assert!(found.windows(2).all(|pair| pair[0] == pair[1]), "{found:?}");
+        found[0]
     }
 
     fn rect(left: i32, top: i32, right: i32, bottom: i32) -> Outline {
@@ -358,6 +400,48 @@ mod tests {
     fn reversed(mut outline: Outline) -> Outline {
         outline.reverse();
         outline
+    }
+
+    #[test]
+    fn rings_and_stars_are_proved_apart() {
+        // A wavy ring of `corners` corners around (0, 0), the one way or the other.
+        let ring = |corners: i32, radius: f64, way: f64, twist: f64| -> Outline {
+            let at = |i: i32| {
+                let angle = twist + way * f64::from(i) / f64::from(corners) * std::f64::consts::TAU;
+                let r = radius * (1.0 + 0.2 * libm::cos(7.0 * angle));
+                ((r * libm::cos(angle)) as i32, (r * libm::sin(angle)) as i32)
+            };
+            (0..corners).map(at).collect()
+        };
+        for corners in [3, 8, 9, 17, 64, 100] {
+            let (outer, hole, dot) =
+                (ring(corners, 9e3, 1.0, 0.1), ring(corners, 4e3, -1.0, 0.5), ring(corners, 1e3, 1.0, 0.0));
+            let beside = outer.iter().map(|(x, y)| (x + 30_000, y - 500)).collect::<Outline>();
+            for simple in [
+                vec![outer.clone()],
+                vec![outer.clone(), hole.clone()],
+                vec![dot.clone(), outer.clone(), hole.clone()],
+                vec![reversed(outer.clone()), reversed(hole.clone()), reversed(beside.clone())],
+                // Corners twice in a row, and an outline that is a point.
+                vec![outer.iter().flat_map(|p| [*p, *p]).collect(), vec![(50, 50)], beside.clone()],
+            ] {
+                assert!(are_apart(&simple) && crossed(&simple) == Some(vec![]), "{corners}");
+            }
+            for other in [
+                vec![outer.clone(), reversed(hole.clone())],
+                vec![outer.clone(), reversed(beside)],
+                vec![outer.clone(), dot.clone()],
+                vec![hole.clone(), hole.iter().map(|(x, y)| (x + 900, *y)).collect()],
+                // To a corner and back again; a corner that touches an edge.
+                vec![vec![(0, 0), (500, 0), (900, 0), (500, 0), (500, 500)]],
+                vec![vec![(0, 0), (800, 0), (800, 800), (400, 0), (0, 800)]],
+                vec![vec![(0, 0), (100, 100), (100, 0), (0, 100)]],
+            ] {
+                assert!(!are_apart(&other), "{corners}");
+            }
+        }
+        // The last edge of an outline and the first of the next are no neighbours.
+        assert!(!are_apart(&[rect(0, 0, 100, 100), reversed(rect(0, 0, 50, 50))]));
     }
 
     #[test]
@@ -473,7 +557,7 @@ mod tests {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (seed >> 8) as i32 % limit
         };
-        let (mut simple, mut others, mut missed) = (0, 0, 0);
+        let (mut simple, mut others, mut missed, mut all_apart) = (0, 0, 0, 0);
         for round in 0..30_000 {
             // Small numbers, so that corners meet and lie on edges.
             let (size, step) = (6 + round % 9, [100, 517, 1024][round as usize / 9 % 3]);
@@ -482,13 +566,15 @@ mod tests {
                 .collect();
             let found = crossed(&outlines).unwrap();
             assert!(found.windows(2).all(|pair| pair[0] < pair[1]));
+            let apart = are_apart(&outlines);
+            all_apart += usize::from(apart);
             for strip in 0..=((size * step) >> STRIP_SHIFT) {
                 let found = !found.contains(&strip);
                 match winds_once(&outlines, strip) {
                     Some(true) if found => simple += 1,
                     Some(true) => missed += 1,
                     Some(false) => {
-                        assert!(!found, "{strip} {outlines:?}");
+                        assert!(!found && !apart, "{strip} {outlines:?}");
                         others += 1;
                     }
                     None => {}
@@ -496,6 +582,9 @@ mod tests {
             }
         }
         // Outlines that touch may be missed.
-        assert!(simple > 10_000 && others > 20_000 && missed * 20 < simple, "{simple} {others} {missed}");
+        assert!(
+            simple > 10_000 && others > 20_000 && missed * 20 < simple && all_apart > 2_000,
+            "{simple} {others} {missed} {all_apart}"
+        );
     }
 }

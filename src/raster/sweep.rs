@@ -185,7 +185,8 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
     let whole = |index: usize| left <= side(index) && right >= side(index + 1);
     let start = if whole(first) { first } else { first + 1 };
     let end = if whole(last) { last + 1 } else { last };
-    let whole_rows = Rows::between((rect.top - top + fixed::ONE - 1) >> fixed::SHIFT, (rect.bottom - top) >> fixed::SHIFT);
+    let whole_rows =
+        Rows::between((rect.top - top + fixed::ONE - 1) >> fixed::SHIFT, (rect.bottom - top) >> fixed::SHIFT);
     let touched = Rows::between((rect.top - top) >> fixed::SHIFT, (rect.bottom - top + fixed::ONE - 1) >> fixed::SHIFT);
     let rect_side = |index: usize| RectSide {
         heights,

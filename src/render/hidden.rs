@@ -46,8 +46,7 @@ pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut Ban
             if let Content::Rect(rect, _) = item.content {
                 // Its coverage is found again as soon as it would be read.
                 if place > 0 {
-                    work += 1;
-                    claim_rect(frame, &mut scratch.occlusion, rect, place as u32);
+                    work += usize::from(claim_rect(frame, &mut scratch.occlusion, rect, place as u32));
                 }
             } else if let Some(Command::Draw(draw)) = frame.list.commands.get(item.command as usize) {
                 let edges = chunk.edges(band, *item);
@@ -83,7 +82,8 @@ fn claim_blocks<S: Simd>(
     let seen = find_visible(frame, scratch, draw.bounds);
     if seen && let Some(rect) = rectangle(frame, &draw.geometry, draw.antialias, draw.bounds) {
         // Its coverage is found again as soon as it would be read.
-        return claim_rect(frame, &mut scratch.occlusion, rect, order);
+        claim_rect(frame, &mut scratch.occlusion, rect, order);
+        return;
     }
     scratch.kept.begin(order);
     if !seen {
@@ -106,13 +106,13 @@ fn claim_blocks<S: Simd>(
     );
 }
 
-/// Claims the blocks that a rectangle covers whole.
+/// Claims the blocks that a rectangle covers whole; false where it is too narrow for any.
 #[inline(always)]
-fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, order: u32) {
+fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, order: u32) -> bool {
     const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
     let (first, end) = ((rect.left.max(0) + BLOCK - 1) / BLOCK, rect.right.max(0) / BLOCK);
     if first >= end {
-        return;
+        return false;
     }
     for strip in 0..frame.strips {
         let top = frame.strip_top(strip);
@@ -121,6 +121,7 @@ fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, ord
             occlusion.claim(order, strip, first as usize, end as usize);
         }
     }
+    true
 }
 
 /// Notes for each strip where a draw within `bounds` can be seen; false if nowhere. Without hidden blocks it notes

@@ -189,9 +189,15 @@ mod tests {
         occlusion.claim(3, 0, 60, 67);
         assert_eq!((occlusion.visible(0, bounds), occlusion.count()), ((1, 70), 10));
         assert!((0..70).all(|block| occlusion.is_hidden(0, block) == (60..67).contains(&block)));
-        assert_eq!((occlusion.visible_run(0, 3, 70), occlusion.visible_run(0, 60, 70)), (Some((3, 60)), Some((67, 70))));
+        assert_eq!(
+            (occlusion.visible_run(0, 3, 70), occlusion.visible_run(0, 60, 70)),
+            (Some((3, 60)), Some((67, 70)))
+        );
         assert_eq!((occlusion.visible_run(0, 60, 67), occlusion.visible_run(0, 68, 69)), (None, Some((68, 69))));
-        assert_eq!((occlusion.visible_run(1, 0, 70), occlusion.visible_run(1, 64, 70)), (Some((0, 64)), Some((64, 70))));
+        assert_eq!(
+            (occlusion.visible_run(1, 0, 70), occlusion.visible_run(1, 64, 70)),
+            (Some((0, 64)), Some((64, 70)))
+        );
         occlusion.release(3);
         assert!(!occlusion.is_some() && occlusion.visible(1, bounds) == (1, 70));
     }
