@@ -49,16 +49,10 @@ pub(crate) fn over_opaque_row<S: Simd>(simd: S, row: &mut [u8; 64], color: [u8; 
 /// An opaque colour by a mask, made ready once for rows that share both.
 #[derive(Clone, Copy)]
 pub(crate) struct OpaqueRow<S: Simd> {
-    pub(crate) halves: [OpaqueHalf<S>; 2],
-}
-
-/// Half of it: 8 pixels.
-#[derive(Clone, Copy)]
-pub(crate) struct OpaqueHalf<S: Simd> {
-    /// What the colour adds, with the half that rounds.
-    added: Words<S>,
+    /// Of each half of the row, what the colour adds, with the half that rounds.
+    added: [Words<S>; 2],
     /// How much of what is below stays.
-    rest: u16x16<S>,
+    rest: [u16x16<S>; 2],
 }
 
 impl<S: Simd> OpaqueRow<S> {
@@ -68,33 +62,27 @@ impl<S: Simd> OpaqueRow<S> {
         let source = solid(simd, [r, g, b, 255]);
         let [low, high] = mask_words(simd, mask);
         let (low_added, high_added) = (source.times(low), source.times(high));
-        Self {
-            halves: [
-                OpaqueHalf { added: low_added, rest: low ^ 255 },
-                OpaqueHalf { added: high_added, rest: high ^ 255 },
-            ],
-        }
+        Self { added: [low_added, high_added], rest: [low ^ 255, high ^ 255] }
     }
 
     /// Puts it over 16 pixels.
     #[inline(always)]
     pub(crate) fn over(&self, simd: S, row: &mut [u8; 64]) {
-        for (pixels, half) in row.as_chunks_mut::<32>().0.iter_mut().zip(&self.halves) {
-            half.over(simd, pixels);
-        }
-    }
-}
-
-impl<S: Simd> OpaqueHalf<S> {
-    /// Puts it over 8 pixels.
-    #[inline(always)]
-    pub(crate) fn over(&self, simd: S, pixels: &mut [u8; 32]) {
-        let below = Words::from_bytes(u8x32::load_array_ref(simd, pixels));
-        let mixed = Words {
-            even: quotient_255(below.even * self.rest + self.added.even),
-            odd: quotient_255(below.odd * self.rest + self.added.odd),
-        };
-        mixed.to_bytes().store_array(pixels);
+        let [low, high] = self.added;
+        over_halves(
+            simd,
+            row,
+            self.rest,
+            #[inline(always)]
+            |half, below, rest| {
+                let added = if half == 0 { low } else { high };
+                Words {
+                    even: quotient_255(below.even * rest + added.even),
+                    odd: quotient_255(below.odd * rest + added.odd),
+                }
+                .to_bytes()
+            },
+        );
     }
 }
 

@@ -61,7 +61,8 @@ impl State {
 
     /// Moves, scales and turns the recording's pixels.
     pub(super) fn move_list(&mut self, then: Transform) {
-        self.to_list = Some(self.to_list.unwrap_or(Transform::IDENTITY).post_concat(then));
+        let moved = self.to_list.unwrap_or(Transform::IDENTITY).post_concat(then);
+        self.to_list = (!moved.is_identity()).then_some(moved);
     }
 }
 

@@ -362,12 +362,18 @@ mod tests {
 
     type Outline = Vec<(i32, i32)>;
 
-    fn crossed(outlines: &[Outline]) -> Option<Vec<i32>> {
+    /// The corners of outlines, each with its first once more, and where they end.
+    fn corners(outlines: &[Outline]) -> (Vec<FixedPoint>, Vec<usize>) {
         let (mut points, mut ends) = (Vec::new(), Vec::new());
         for outline in outlines {
             points.extend(outline.iter().chain(outline.first()).map(|(x, y)| FixedPoint { x: *x, y: *y }));
             ends.push(points.len());
         }
+        (points, ends)
+    }
+
+    fn crossed(outlines: &[Outline]) -> Option<Vec<i32>> {
+        let (points, ends) = corners(outlines);
         let found = dispatch!(SimdLevel::best(), simd => {
             Simplicity::default().crossed_strips(simd, &points, &ends).map(<[i32]>::to_vec)
         });
@@ -380,11 +386,7 @@ mod tests {
 
     /// Whether the quick proof is found.
     fn are_apart(outlines: &[Outline]) -> bool {
-        let (mut points, mut ends) = (Vec::new(), Vec::new());
-        for outline in outlines {
-            points.extend(outline.iter().chain(outline.first()).map(|(x, y)| FixedPoint { x: *x, y: *y }));
-            ends.push(points.len());
-        }
+        let (points, ends) = corners(outlines);
         let found = SimdLevel::available()
             .into_iter()
             .map(|level| dispatch!(level, simd => Apart::default().wind_once(simd, &points, &ends)));

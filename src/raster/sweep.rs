@@ -7,7 +7,7 @@ use super::cell::{Column, FULL, Strip};
 use crate::geom::FixedRect;
 use crate::num::fixed;
 use crate::num::lanes::{min_i32, truncate_f32};
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, Rows};
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
 
 /// How accumulated values become coverage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,24 +185,14 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
     let whole = |index: usize| left <= side(index) && right >= side(index + 1);
     let start = if whole(first) { first } else { first + 1 };
     let end = if whole(last) { last + 1 } else { last };
-    let whole_rows =
-        Rows::between((rect.top - top + fixed::ONE - 1) >> fixed::SHIFT, (rect.bottom - top) >> fixed::SHIFT);
-    let touched = Rows::between((rect.top - top) >> fixed::SHIFT, (rect.bottom - top + fixed::ONE - 1) >> fixed::SHIFT);
-    let rect_side = |index: usize| RectSide {
-        heights,
-        whole: whole_rows,
-        partial: touched.without(whole_rows),
-        left: left - side(index),
-        right: right - side(index),
-    };
     if start > first && sink.wants(first) {
-        sink.side(simd, first, &rect_side(first));
+        sink.side(simd, first, &RectSide { heights, left: left - side(first), right: right - side(first) });
     }
     if start < end {
         sink.run(simd, start, end, &rows);
     }
     if end <= last && (last > first || start == first) && sink.wants(last) {
-        sink.side(simd, last, &rect_side(last));
+        sink.side(simd, last, &RectSide { heights, left: left - side(last), right: right - side(last) });
     }
 }
 
@@ -211,21 +201,9 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
 pub(crate) struct RectSide {
     /// How much of each row's height is covered, of 256.
     pub(crate) heights: [u32; BLOCK_HEIGHT],
-    /// The rows that are covered over their whole height.
-    pub(crate) whole: Rows,
-    /// Those that are covered over a part of it.
-    pub(crate) partial: Rows,
     /// From where to where, in 1/256 pixel from the block's left side.
     left: i32,
     right: i32,
-}
-
-/// How much of half a row a rectangle covers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum HalfCoverage {
-    Nothing,
-    Partial,
-    Whole,
 }
 
 impl RectSide {
@@ -233,20 +211,6 @@ impl RectSide {
     #[inline(always)]
     pub(crate) fn row<S: Simd>(&self, simd: S, height: u32) -> [u8; BLOCK_WIDTH] {
         covered_row(simd, self.left, self.right, height)
-    }
-
-    /// What is covered of the left (0) or the right (1) half of a row that is covered over its whole height.
-    #[inline(always)]
-    pub(crate) fn half(&self, half: usize) -> HalfCoverage {
-        const HALF: i32 = ((BLOCK_WIDTH / 2) as i32) << fixed::SHIFT;
-        let (start, end) = (half as i32 * HALF, (half as i32 + 1) * HALF);
-        if self.left <= start && self.right >= end {
-            HalfCoverage::Whole
-        } else if self.left >= end || self.right <= start {
-            HalfCoverage::Nothing
-        } else {
-            HalfCoverage::Partial
-        }
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use super::clip::{BandMask, ClipBlock};
 use super::coverage::Coverage;
 use super::kept::{Kept, KeptCoverage};
 use super::occlusion::Occlusion;
-use super::surface::{HALF_BYTES, NO_PIXELS, ROW_BYTES, Surface};
+use super::surface::{NO_PIXELS, ROW_BYTES, Surface};
 use crate::blend::{
     BlendMode, OpaqueRow, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row,
     over_solid_full, over_solid_row, scale_mask_row, scale_mask_row_by,
@@ -16,7 +16,7 @@ use crate::display_list::Draw;
 use crate::num::fixed;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
-use crate::raster::sweep::{BlockSink, HalfCoverage, RectSide};
+use crate::raster::sweep::{BlockSink, RectSide};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, Rows};
 
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
@@ -297,12 +297,9 @@ impl Painter<'_, '_, '_> {
                 }
                 continue;
             }
-            let part = OpaqueRow::new(simd, color, &[coverage; BLOCK_WIDTH]);
             for pixels in blocks {
                 if coverage == 255 {
                     over_solid_full(simd, pixels, color);
-                } else if color[3] == 255 {
-                    part.over(simd, pixels);
                 } else {
                     over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
                 }
@@ -391,38 +388,19 @@ impl Painter<'_, '_, '_> {
 
     #[inline(always)]
     fn paint_side_inner<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide, color: [u8; 4]) {
-        let pattern = &self.pattern;
-        let row = OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE as u32));
+        let whole = OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE as u32));
         self.surface.with_block(
             self.strip,
             index,
             #[inline(always)]
             |mut rows| {
-                // The side is in one half; the other lies inside or outside of the rectangle.
-                for (half, (over, pattern)) in row.halves.iter().zip(pattern.as_chunks::<HALF_BYTES>().0).enumerate() {
-                    match side.half(half) {
-                        HalfCoverage::Nothing => {}
-                        HalfCoverage::Whole => rows.each_half(
-                            side.whole,
-                            half,
-                            #[inline(always)]
-                            |pixels| *pixels = *pattern,
-                        ),
-                        HalfCoverage::Partial => rows.each_half(
-                            side.whole,
-                            half,
-                            #[inline(always)]
-                            |pixels| over.over(simd, pixels),
-                        ),
-                    }
-                }
                 rows.each(
-                    side.partial,
+                    Rows::ALL,
                     #[inline(always)]
-                    |row, pixels| {
-                        if let Some(height) = side.heights.get(row) {
-                            over_opaque_row(simd, pixels, color, &side.row(simd, *height));
-                        }
+                    |row, pixels| match side.heights.get(row) {
+                        None | Some(0) => {}
+                        Some(256) => whole.over(simd, pixels),
+                        Some(part) => over_opaque_row(simd, pixels, color, &side.row(simd, *part)),
                     },
                 );
             },

@@ -4,8 +4,6 @@ use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, PixelBlock, Rows};
 
 /// Bytes of a block's row.
 pub(super) const ROW_BYTES: usize = BLOCK_WIDTH * 4;
-/// Bytes of half a block's row.
-pub(super) const HALF_BYTES: usize = ROW_BYTES / 2;
 /// A transparent block.
 pub(super) const NO_PIXELS: PixelBlock = [[0; ROW_BYTES]; BLOCK_HEIGHT];
 
@@ -166,20 +164,6 @@ impl BlockRows<'_> {
                 let rest = self.bytes.get_mut(row * self.stride..);
                 if let Some(pixels) = rest.and_then(|rest| rest.first_chunk_mut::<ROW_BYTES>()) {
                     f(row, pixels);
-                }
-            },
-        );
-    }
-
-    /// As [`each`](Self::each), of the left (0) or the right (1) half of the rows.
-    #[inline(always)]
-    pub(super) fn each_half(&mut self, rows: Rows, half: usize, mut f: impl FnMut(&mut [u8; HALF_BYTES])) {
-        rows.within(self.count).for_each(
-            #[inline(always)]
-            |row| {
-                let rest = self.bytes.get_mut(row * self.stride + half * HALF_BYTES..);
-                if let Some(pixels) = rest.and_then(|rest| rest.first_chunk_mut::<HALF_BYTES>()) {
-                    f(pixels);
                 }
             },
         );

@@ -24,13 +24,6 @@ pub(crate) struct Rows(u32);
 impl Rows {
     pub(crate) const ALL: Self = Self(0x1111_1111);
 
-    /// Rows `first..end`, as far as there are any.
-    #[inline(always)]
-    pub(crate) fn between(first: i32, end: i32) -> Self {
-        let from = |row: i32| (u64::from(Self::ALL.0) << (4 * row.clamp(0, BLOCK_HEIGHT as i32))) as u32;
-        Self(from(first) & !from(end))
-    }
-
     /// Those that are covered somewhere.
     #[inline(always)]
     pub(crate) fn covered<S: Simd>(simd: S, mask: &MaskBlock) -> Self {
@@ -103,10 +96,6 @@ mod tests {
             assert_eq!(listed(full), [2, 7], "{level:?}");
             assert_eq!(listed(covered.without(full)), [1, 4, 5], "{level:?}");
             assert_eq!(listed(covered.within(5)), [1, 2, 4], "{level:?}");
-            assert_eq!(listed(Rows::between(2, 5)), [2, 3, 4]);
-            assert_eq!((listed(Rows::between(-3, 1)), listed(Rows::between(7, 30))), (vec![0], vec![7]));
-            assert_eq!((listed(Rows::between(-9, 99)), listed(Rows::between(5, 5))), (listed(Rows::ALL), Vec::new()));
-            assert!(listed(Rows::between(6, 3)).is_empty());
             assert_eq!((listed(covered.within(0)), covered.within(8)), (Vec::new(), covered));
         }
     }
