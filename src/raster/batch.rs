@@ -7,11 +7,17 @@ use fearless_simd::{f32x8, i32x8};
 
 use super::bins::Edges;
 use super::cell::Accumulator;
-use super::edge::FixedPoint;
-use super::kernel::{PieceLine, Reach, RowParts, STRIP_SHIFT, add_downward, add_row_parts, is_flat, two_columns};
+use super::edge::{FineLine, FixedPoint};
+use super::kernel::{
+    FINE_SHIFT, PieceLine, Reach, RowParts, STRIP_SHIFT, Slant, add_downward, add_row_parts, add_strip_part, fine,
+    is_flat, two_columns,
+};
 use crate::num::fixed;
 use crate::num::lanes::{greater_f32, lesser_f32, max_i32, min_i32};
 use crate::surface::block::BLOCK_HEIGHT;
+
+/// From 24.8 to 20.12 fixed point.
+const FINER_SHIFT: u32 = FINE_SHIFT - fixed::SHIFT;
 
 /// Adds edges to the band whose top is at `top` and which has `strips` strips, as
 /// [`add_edge`](super::kernel::add_edge) does one of them.
@@ -41,6 +47,10 @@ pub(crate) fn add_edges<S: Simd>(
                 if !add_single(simd, cells, &eight, lane, strips, reaches) {
                     others |= 1 << lane;
                 }
+            }
+            if is_worth_a_batch(others & eight.tall) {
+                add_tall(simd, cells, &eight, others, top, strips, reaches);
+                return;
             }
             while others != 0 {
                 let lane = others.trailing_zeros() as usize & 7;
@@ -133,6 +143,127 @@ impl SmallAreas {
     }
 }
 
+/// Adds edges strip by strip, as the general way does edge by edge: where each of them enters and leaves a strip is found for all
+/// at once.
+#[inline(never)]
+fn add_tall<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    eight: &Eight,
+    edges: u32,
+    top: i32,
+    strips: usize,
+    reaches: &[Reach],
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || add_tall_inner(simd, cells, eight, edges, top, strips, reaches),
+    )
+}
+
+#[inline(always)]
+fn add_tall_inner<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    eight: &Eight,
+    edges: u32,
+    top: i32,
+    strips: usize,
+    reaches: &[Reach],
+) {
+    let crossings = Crossings::new(simd, eight);
+    let mut from = crossings.at(simd, eight, 0);
+    for index in 0..strips {
+        let strip_top = (index as i32) << STRIP_SHIFT;
+        let to = crossings.at(simd, eight, strip_top + (1 << STRIP_SHIFT));
+        let pieces = Pieces::new(simd, eight, &from, &to, strip_top);
+        let mut left = pieces.climbs & edges;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize & 7;
+            left &= left - 1;
+            let (first, last) = (pieces.first[lane] as usize, pieces.last[lane] as usize);
+            let height = pieces.height[lane];
+            let seen = reaches.get(index).is_none_or(|reach| reach.holds_columns(first, last));
+            if is_flat(first, last, height) || !seen {
+                let y = top + strip_top + pieces.below[lane];
+                let (start, end) = ((from[lane], y), (to[lane], y + height));
+                add_strip_part::<S, false>(simd, cells, index, start, end, eight.slant(lane), top, reaches);
+            } else if let Some(strip) = cells.strip(index) {
+                let (below, start, slant) = (pieces.below[lane], pieces.start[lane], eight.slant(lane));
+                let parts = RowParts::of(simd, PieceLine { below, height, start, slant });
+                add_row_parts(simd, strip, parts, first, last);
+            }
+        }
+        from = to;
+    }
+}
+
+/// Eight edges' lines, a lane for each, as [`FineLine`](super::edge::FineLine) has them.
+struct Crossings {
+    x: [f64; 8],
+    slope: [f64; 8],
+}
+
+impl Crossings {
+    #[inline(always)]
+    fn new<S: Simd>(_simd: S, eight: &Eight) -> Self {
+        let (mut x, mut slope) = ([0.0; 8], [0.0; 8]);
+        for lane in 0..8 {
+            let line = FineLine::new(eight.start_x[lane], eight.end_x[lane], eight.height[lane]);
+            (x[lane], slope[lane]) = (line.x, line.slope);
+        }
+        Self { x, slope }
+    }
+
+    /// x in 20.12 fixed point where they cross y, from the band's top; where they start or end, if they do not.
+    #[inline(always)]
+    fn at<S: Simd>(&self, simd: S, eight: &Eight, y: i32) -> [i32; 8] {
+        let (start_y, height) =
+            (i32x8::load_array_ref(simd, &eight.start_y), i32x8::load_array_ref(simd, &eight.height));
+        let down = i32x8::splat(simd, y) - start_y;
+        let (mut x, climbs) = ([0; 8], down.to_array());
+        for lane in 0..8 {
+            x[lane] = FineLine { x: self.x[lane], slope: self.slope[lane] }.x_at(climbs[lane]);
+        }
+        let (start_x, end_x) = (i32x8::load_array_ref(simd, &eight.start_x), i32x8::load_array_ref(simd, &eight.end_x));
+        let x = down.simd_ge(height).select(end_x << FINER_SHIFT, i32x8::load_array(simd, x));
+        down.simd_le(0).select(start_x << FINER_SHIFT, x).to_array()
+    }
+}
+
+/// The pieces of eight edges in one strip, a lane for each, as a [`PieceLine`] has them.
+struct Pieces {
+    /// Which of them there are, as bits.
+    climbs: u32,
+    below: [i32; 8],
+    height: [i32; 8],
+    start: [f32; 8],
+    first: [i32; 8],
+    last: [i32; 8],
+}
+
+impl Pieces {
+    /// Those in the strip whose top lies so far below the band's, in which they go from x to x (20.12 fixed point).
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, eight: &Eight, from: &[i32; 8], to: &[i32; 8], strip_top: i32) -> Self {
+        let (from, to) = (i32x8::load_array_ref(simd, from), i32x8::load_array_ref(simd, to));
+        let start_y = i32x8::load_array_ref(simd, &eight.start_y) - strip_top;
+        let end_y = start_y + i32x8::load_array_ref(simd, &eight.height);
+        let below = max_i32(start_y, i32x8::splat(simd, 0));
+        let height = min_i32(end_y, i32x8::splat(simd, 1 << STRIP_SHIFT)) - below;
+        let (first, last) = (min_i32(from, to) >> FINE_SHIFT, max_i32(from, to) >> FINE_SHIFT);
+        let start = (from - (first << FINE_SHIFT)).to_float::<f32x8<S>>() * f32x8::splat(simd, fine(1));
+        Self {
+            climbs: height.simd_gt(0).to_bitmask() as u32,
+            below: below.to_array(),
+            height: height.to_array(),
+            start: start.to_array(),
+            first: first.to_array(),
+            last: last.to_array(),
+        }
+    }
+}
+
 /// Adds an edge that keeps to one strip; false if it is for the general way: flat, or only some of its columns matter.
 #[inline(always)]
 fn add_single<S: Simd>(
@@ -148,7 +279,7 @@ fn add_single<S: Simd>(
         Place::Unseen => return true,
         Place::PartlySeen => return false,
     };
-    if is_flat(first, last, eight.height[lane] as f32) {
+    if is_flat(first, last, eight.height[lane]) {
         return false;
     }
     if let Some(strip) = cells.strip(strip) {
@@ -156,9 +287,7 @@ fn add_single<S: Simd>(
             below: eight.start_y[lane] & ((1 << STRIP_SHIFT) - 1),
             height: eight.height[lane],
             start: eight.start[lane],
-            slope: eight.slope[lane],
-            steep: eight.steep[lane],
-            winding: eight.winding[lane],
+            slant: eight.slant(lane),
         };
         add_row_parts(simd, strip, RowParts::of(simd, line), first, last);
     }
@@ -182,6 +311,8 @@ struct Eight {
     single: u32,
     /// Which of the latter have at most two rows and two columns.
     small: u32,
+    /// Which of them are higher than a strip.
+    tall: u32,
     /// Where they start, downwards; y from the band's top.
     start_x: [i32; 8],
     start_y: [i32; 8],
@@ -219,6 +350,7 @@ impl Eight {
             climbs: climbs.to_bitmask() as u32,
             single: (climbs & one_strip).to_bitmask() as u32,
             small: (climbs & one_strip & small).to_bitmask() as u32,
+            tall: height.simd_gt(1 << STRIP_SHIFT).to_bitmask() as u32,
             start_x: start_x.to_array(),
             start_y: start_y.to_array(),
             end_x: end_x.to_array(),
@@ -250,6 +382,11 @@ impl Eight {
             }
         }
         Place::Seen(strip, (least >> fixed::SHIFT) as usize, (greatest >> fixed::SHIFT) as usize)
+    }
+
+    #[inline(always)]
+    fn slant(&self, lane: usize) -> Slant {
+        Slant { slope: self.slope[lane], steep: self.steep[lane], winding: self.winding[lane] }
     }
 
     /// An edge as [`Edge::downward`](super::edge::Edge::downward) gives it.

@@ -1,5 +1,8 @@
 //! Edges: the straight pieces of outlines, in 24.8 fixed point.
 
+use crate::num::fixed;
+use crate::num::lanes::round_f64;
+
 /// A corner of an outline, in 1/256 pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -72,15 +75,39 @@ impl EdgeLine {
         Self { x0: i64::from(x0), y0: i64::from(y0), slope }
     }
 
-    /// x at y in 20.12 fixed point, as [`x_at`](Self::x_at), for edges that are clipped to a surface.
-    #[inline(always)]
-    pub(crate) fn fine_x_at(self, y: i32) -> i32 {
-        ((self.x0 << 4) + ((self.slope * (i64::from(y) - self.y0) + (1 << 27)) >> 28)) as i32
-    }
-
     /// x at y, for y between the edge's ends: |slope · (y − y0)| ≤ |dx| · 2^32 < 2^62.
     #[inline(always)]
     pub(crate) fn x_at(self, y: i32) -> i32 {
         (self.x0 + ((self.slope * (i64::from(y) - self.y0) + (1 << 31)) >> 32)) as i32
+    }
+}
+
+/// Where an edge crosses the tops of strips, finer than its ends, so that it does not show that this is rounded once more.
+///
+/// In `f64`, which has room for the product whole but for bits that do not matter: a vector of edges at once is as easy as
+/// one of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FineLine {
+    /// x where it starts.
+    pub(super) x: f64,
+    /// dx / dy, in 1/4096 pixel per 1/256.
+    pub(super) slope: f64,
+}
+
+impl FineLine {
+    /// Fraction bits of x.
+    pub(super) const SHIFT: u32 = 12;
+
+    /// The line from x0 to x1, for edges that are clipped to a surface, which goes down by `height` > 0.
+    #[inline(always)]
+    pub(super) fn new(x0: i32, x1: i32, height: i32) -> Self {
+        const FINER: f64 = (1 << (FineLine::SHIFT - fixed::SHIFT)) as f64;
+        Self { x: f64::from(x0) * FINER, slope: f64::from(x1 - x0) * FINER / f64::from(height) }
+    }
+
+    /// x so far below its start, in 20.12 fixed point.
+    #[inline(always)]
+    pub(super) fn x_at(self, down: i32) -> i32 {
+        round_f64(self.x + self.slope * f64::from(down))
     }
 }

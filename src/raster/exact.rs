@@ -18,7 +18,7 @@ use fearless_simd::{f32x8, i32x8};
 
 use super::cell::{Column, FULL, Marks, Strip};
 use super::edge::Edge;
-use super::kernel::{RowParts, STRIP_SHIFT, for_strip_parts};
+use super::kernel::{RowParts, STRIP_SHIFT, Slant, for_strip_parts};
 use super::sample::inside;
 use crate::num::fixed;
 use crate::num::lanes::{greater_f32, lesser_f32};
@@ -254,7 +254,9 @@ fn list_pixels<S: Simd>(simd: S, cells: &mut Strip, rows: &mut [Row; BLOCK_HEIGH
                 for_rows(starts, rows, |row, index| {
                     let at = |lanes: &[i32; 8]| i64::from(lanes.get(index).copied().unwrap_or(0));
                     let sum = if wide.is_empty() { at(&windings) } else { wide_sum.get(index).copied().unwrap_or(0) };
-                    row.clusters.push((column, (sum >> FULL.ilog2()) as i32));
+                    // Rounded: beside a part that goes on in other rows, sums are right to some 1/2^17 only.
+                    let winding = (sum + i64::from(FULL / 2)) >> FULL.ilog2();
+                    row.clusters.push((column, winding as i32));
                 });
             }
             if marks.twice != 0 {
@@ -285,6 +287,7 @@ fn gather<S: Simd>(simd: S, cells: &Strip, edge: &Edge, top: i32, rows: &mut [Ro
     if y1 <= top || y0 >= top + (1 << STRIP_SHIFT) || y0 == y1 {
         return;
     }
+    let slant = Slant::new(edge.downward());
     for_strip_parts(
         edge.downward(),
         top,
@@ -300,13 +303,16 @@ fn gather<S: Simd>(simd: S, cells: &Strip, edge: &Edge, top: i32, rows: &mut [Ro
             if found == 0 {
                 return;
             }
-            let parts = RowParts::new(simd, start, end, winding, top, first);
+            let parts = RowParts::new(simd, start, end, slant, top, first);
             let (left, right) = (parts.left.to_array(), parts.right.to_array());
             let (upper, lower) = (parts.upper.to_array(), parts.lower.to_array());
             let y = start.1 - top;
             for_rows(found, rows, |row, index| {
                 let at = |lanes: &[i32; 8]| lanes.get(index).copied().unwrap_or(0);
-                let column = |lanes: &[f32; 8]| (lanes.get(index).copied().unwrap_or(0.0) * (1.0 / 256.0)) as usize;
+                // Where a strip ends, x was rounded: the last part may end a little beyond.
+                let column = |lanes: &[f32; 8]| {
+                    ((lanes.get(index).copied().unwrap_or(0.0) * (1.0 / 256.0)) as usize).min(last - first)
+                };
                 let (from, to) = (column(&left), column(&right));
                 let reaches = within.get(from..=to.max(from)).unwrap_or(&[]);
                 let bit = 1 << index;

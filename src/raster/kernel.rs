@@ -17,26 +17,25 @@ use fearless_simd::{f32x8, i32x8};
 use super::batch::add_edges;
 use super::bins::Edges;
 use super::cell::{Accumulator, Column, FULL, Marks, Strip};
-use super::edge::{Edge, EdgeLine};
+use super::edge::{Edge, EdgeLine, FineLine};
 use crate::num::fixed;
-use crate::num::lanes::{RAISED, greater_f32, lesser_f32, max_i32, min_i32, round_raised_f32};
+use crate::num::lanes::{RAISED, greater_f32, lesser_f32, max_i32, min_i32, round_f64, round_raised_f32};
 use crate::style::FillRule;
 use crate::surface::block::BLOCK_HEIGHT;
 
 /// An edge that runs over more columns than this in a row is walked row by row: eight lanes would
 /// mostly idle.
-const FLAT_COLUMNS_PER_ROW: f32 = 10.0;
+const FLAT_COLUMNS_PER_ROW: i64 = 10;
 
-/// Fraction bits of x where an edge enters and leaves a strip: it is rounded there once more, and finer
-/// than its ends, so that this does not show.
-const FINE_SHIFT: u32 = 12;
+/// Fraction bits of x where an edge enters and leaves a strip.
+pub(super) const FINE_SHIFT: u32 = FineLine::SHIFT;
 
 /// A strip's height in fixed point.
 pub(super) const STRIP_SHIFT: u32 = fixed::SHIFT + BLOCK_HEIGHT.ilog2();
 
 /// A difference of x in 20.12 fixed point, in 1/256 pixel.
 #[inline(always)]
-fn fine(x: i32) -> f32 {
+pub(super) fn fine(x: i32) -> f32 {
     x as f32 * (1.0 / 16.0)
 }
 
@@ -60,6 +59,12 @@ impl Reach {
     #[inline(always)]
     pub(super) fn holds(self, least: i32, greatest: i32) -> bool {
         least << (FINE_SHIFT - fixed::SHIFT) >= self.low && greatest << (FINE_SHIFT - fixed::SHIFT) < self.high
+    }
+
+    /// Whether all columns `first ..= last` matter.
+    #[inline(always)]
+    pub(super) fn holds_columns(self, first: usize, last: usize) -> bool {
+        (first as i32) << FINE_SHIFT >= self.low && (last as i32) << FINE_SHIFT < self.high
     }
 
     pub(crate) const NOTHING: Self = Self { low: i32::MIN, high: i32::MIN };
@@ -99,13 +104,13 @@ pub(super) fn add_downward<S: Simd, const TOUCH: bool>(
     strips: usize,
     reaches: &[Reach],
 ) {
-    let winding = edge.4;
+    let slant = Slant::new(edge);
     for_strip_parts(
         edge,
         top,
         strips,
         #[inline(always)]
-        |index, start, end| add_strip_part::<S, TOUCH>(simd, cells, index, start, end, winding, top, reaches),
+        |index, start, end| add_strip_part::<S, TOUCH>(simd, cells, index, start, end, slant, top, reaches),
     );
 }
 
@@ -127,11 +132,11 @@ pub(super) fn for_strip_parts(
         }
         return;
     }
-    let line = EdgeLine::new(x0, y0, x1, y1);
-    let mut from = if first < 0 { (line.fine_x_at(top), top) } else { start };
+    let line = FineLine::new(x0, x1, y1 - y0);
+    let mut from = if first < 0 { (line.x_at(top - y0), top) } else { start };
     for index in first.max(0)..=last.min(strips as i32 - 1) {
         let bottom = top + ((index + 1) << STRIP_SHIFT);
-        let to = if index == last { end } else { (line.fine_x_at(bottom), bottom) };
+        let to = if index == last { end } else { (line.x_at(bottom - y0), bottom) };
         part(index as usize, from, to);
         from = to;
     }
@@ -140,13 +145,13 @@ pub(super) fn for_strip_parts(
 /// Adds the part of an edge that lies in strip `index`, unless it lies where nothing matters.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "in the innermost loop; a struct would only rename them")]
-fn add_strip_part<S: Simd, const TOUCH: bool>(
+pub(super) fn add_strip_part<S: Simd, const TOUCH: bool>(
     simd: S,
     cells: &mut Accumulator,
     index: usize,
     mut start: (i32, i32),
     mut end: (i32, i32),
-    winding: i32,
+    mut slant: Slant,
     top: i32,
     reaches: &[Reach],
 ) {
@@ -156,10 +161,11 @@ fn add_strip_part<S: Simd, const TOUCH: bool>(
         }
         if start.0 < *low && end.0 < *low {
             (start.0, end.0) = (*low, *low);
+            slant = slant.upright();
         }
     }
     if let Some(strip) = cells.strip(index) {
-        add_piece::<S, TOUCH>(simd, strip, start, end, winding, top + ((index as i32) << STRIP_SHIFT));
+        add_piece::<S, TOUCH>(simd, strip, start, end, slant, top + ((index as i32) << STRIP_SHIFT));
     }
 }
 
@@ -171,18 +177,17 @@ fn add_piece<S: Simd, const TOUCH: bool>(
     cells: &mut Strip,
     (start_x, start_y): (i32, i32),
     (end_x, end_y): (i32, i32),
-    winding: i32,
+    slant: Slant,
     top: i32,
 ) {
     let (first, last) = RowParts::<S>::columns((start_x, start_y), (end_x, end_y));
-    let rise = (end_y - start_y) as f32;
-    if is_flat(first, last, rise) {
+    if is_flat(first, last, end_y - start_y) {
         let round = |x: i32| (x + (1 << (FINE_SHIFT - fixed::SHIFT - 1))) >> (FINE_SHIFT - fixed::SHIFT);
-        add_flat::<TOUCH>(cells, round(start_x), start_y, round(end_x), end_y, top, winding);
+        add_flat::<TOUCH>(cells, round(start_x), start_y, round(end_x), end_y, top, slant.winding);
         return;
     }
 
-    let row = RowParts::new(simd, (start_x, start_y), (end_x, end_y), winding, top, first);
+    let row = RowParts::new(simd, (start_x, start_y), (end_x, end_y), slant, top, first);
     add_row_parts(simd, cells, row, first, last);
     if TOUCH {
         row.touch(simd, cells.marks.get_mut(first..=last).unwrap_or(&mut []));
@@ -205,14 +210,10 @@ pub(super) fn add_row_parts<S: Simd>(simd: S, cells: &mut Strip, row: RowParts<S
     }
 }
 
-/// A piece of an edge in one strip, as numbers that are the same in all of its rows.
+/// The direction of an edge, which is that of its pieces in all strips.
 #[derive(Clone, Copy)]
-pub(super) struct PieceLine {
-    /// How far below the strip's top it starts, and how far down it goes, in 1/256 pixel.
-    pub(super) below: i32,
-    pub(super) height: i32,
-    /// x where it starts, in 1/256 pixel from the first column's left side, and its change per unit of y.
-    pub(super) start: f32,
+pub(super) struct Slant {
+    /// The change of x per unit of y.
     pub(super) slope: f32,
     /// |dy / dx| times the winding; 0 where it is upright.
     pub(super) steep: f32,
@@ -220,10 +221,39 @@ pub(super) struct PieceLine {
     pub(super) winding: i32,
 }
 
-/// Whether a piece between two columns that climbs `rise` should be walked row by row.
+impl Slant {
+    /// That of an edge as [`Edge::downward`] gives it.
+    #[inline(always)]
+    pub(super) fn new((x0, y0, x1, y1, winding): (i32, i32, i32, i32, i32)) -> Self {
+        let (run, rise) = ((x1 - x0) as f32, (y1 - y0) as f32);
+        Self {
+            slope: run / rise,
+            // Upright pieces have t = 0.
+            steep: if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() },
+            winding,
+        }
+    }
+
+    fn upright(self) -> Self {
+        Self { slope: 0.0, steep: 0.0, ..self }
+    }
+}
+
+/// A piece of an edge in one strip, as numbers that are the same in all of its rows.
+#[derive(Clone, Copy)]
+pub(super) struct PieceLine {
+    /// How far below the strip's top it starts, and how far down it goes, in 1/256 pixel.
+    pub(super) below: i32,
+    pub(super) height: i32,
+    /// x where it starts, in 1/256 pixel from the first column's left side.
+    pub(super) start: f32,
+    pub(super) slant: Slant,
+}
+
+/// Whether a piece between two columns that goes down by `height` should be walked row by row.
 #[inline(always)]
-pub(super) fn is_flat(first: usize, last: usize, rise: f32) -> bool {
-    last > first + 4 && (last - first) as f32 * 256.0 > FLAT_COLUMNS_PER_ROW * rise
+pub(super) fn is_flat(first: usize, last: usize, height: i32) -> bool {
+    last > first + 4 && (last - first) as i64 * 256 > FLAT_COLUMNS_PER_ROW * i64::from(height)
 }
 
 /// The parts of an edge in the eight rows of a strip; x in 1/256 pixel from the first column's left side.
@@ -259,27 +289,19 @@ impl<S: Simd> RowParts<S> {
     pub(super) fn new(
         simd: S,
         (start_x, start_y): (i32, i32),
-        (end_x, end_y): (i32, i32),
-        winding: i32,
+        (_, end_y): (i32, i32),
+        slant: Slant,
         top: i32,
         first: usize,
     ) -> Self {
-        let (run, rise) = (fine(end_x - start_x), (end_y - start_y) as f32);
-        let line = PieceLine {
-            below: start_y - top,
-            height: end_y - start_y,
-            start: fine(start_x - ((first as i32) << FINE_SHIFT)),
-            slope: run / rise,
-            // Upright pieces have t = 0.
-            steep: if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() },
-            winding,
-        };
-        Self::of(simd, line)
+        let start = fine(start_x - ((first as i32) << FINE_SHIFT));
+        Self::of(simd, PieceLine { below: start_y - top, height: end_y - start_y, start, slant })
     }
 
     /// The parts of a piece.
     #[inline(always)]
-    pub(super) fn of(simd: S, PieceLine { below, height, start, slope, steep, winding }: PieceLine) -> Self {
+    pub(super) fn of(simd: S, PieceLine { below, height, start, slant }: PieceLine) -> Self {
+        let Slant { slope, steep, winding } = slant;
         let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) - below;
         let zero = i32x8::splat(simd, 0);
         let limit = i32x8::splat(simd, height);
@@ -352,23 +374,26 @@ pub(super) fn two_columns<S: Simd>(
     [area - RAISED, next_area - area, total + RAISED - next_area]
 }
 
-/// Adds parts that lie in all columns but the last.
+/// Adds parts that lie in all columns but the last, which are three at least: none of them is upright.
+///
+/// With u = max(b − x_left, 0) and w = max(b − x_right, 0), all that is covered up to a side b is s·steep·(u² − w²): the
+/// formula above, and what lies right of x_right, in one.
 #[inline(always)]
 fn add_columns<S: Simd>(simd: S, columns: &mut [Column], row: RowParts<S>) {
-    let RowParts { left, right, steep, beyond, total, .. } = row;
+    let RowParts { left, right, steep, total, .. } = row;
     let zero = f32x8::splat(simd, 0.0);
     let whole = f32x8::splat(simd, 256.0);
-    let (mut within, mut area) = (zero, i32x8::splat(simd, RAISED));
-    let mut side = whole;
+    let (mut from_left, mut from_right) = (whole - left, whole - right);
+    let (mut before, mut area) = (zero, i32x8::splat(simd, RAISED));
     let Some((spill, columns)) = columns.split_last_mut() else { return };
     for column in columns {
-        let t = greater_f32(lesser_f32(right, side) - left, zero);
-        let up_to_here = steep * t * t;
-        let right_of = lesser_f32(greater_f32(side - right, zero), whole);
-        let here = round_raised_f32((up_to_here - within) + beyond * right_of);
+        let (u, w) = (greater_f32(from_left, zero), greater_f32(from_right, zero));
+        let up_to_here = steep * (u - w) * (u + w);
+        let here = round_raised_f32(up_to_here - before);
         add_to(simd, column, here - area);
-        (within, area) = (up_to_here, here);
-        side += whole;
+        (before, area) = (up_to_here, here);
+        from_left += whole;
+        from_right += whole;
     }
     add_to(simd, spill, total + RAISED - area);
 }
@@ -399,21 +424,15 @@ impl Strip {
         };
         for column in columns {
             let up_to_here = steep * side * side;
-            let here = round(up_to_here - within);
+            let here = round_f64(up_to_here - within);
             add(column, here - area);
             (within, area) = (up_to_here, here);
             side += 256.0;
         }
-        let here = round(height * width - within + 2.0 * height * (side - width));
+        let here = round_f64(height * width - within + 2.0 * height * (side - width));
         add(end, here - area);
         add(spill, 512 * dy - here);
     }
-}
-
-/// The nearest integer, ties to even, of a value within ±2^31.
-#[inline(always)]
-fn round(v: f64) -> i32 {
-    (v + 6_755_399_441_055_744.0).to_bits() as i32
 }
 
 /// Adds a flat piece row by row.

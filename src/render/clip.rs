@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 
 use crate::num::lanes::div255;
 use crate::raster::sweep::BlockSink;
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, BlockCoverage, MaskBlock};
 
 /// What a clip leaves of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,8 +87,8 @@ pub(super) struct ClipSink<'a> {
 
 impl<S: Simd> BlockSink<S> for ClipSink<'_> {
     #[inline(always)]
-    fn block(&mut self, _simd: S, index: usize, mask: &MaskBlock) {
-        self.mask.set(self.strip, index, mask, self.parent);
+    fn block(&mut self, _simd: S, index: usize, coverage: BlockCoverage<'_>) {
+        self.mask.set(self.strip, index, coverage.mask, self.parent);
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 
 use super::occlusion::Occlusion;
 use crate::raster::sweep::BlockSink;
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock};
+use crate::surface::block::{BLOCK_HEIGHT, BlockCoverage, MaskBlock, Rows};
 
 /// At most so many masks are kept in a band: 1 MiB.
 const MOST_MASKS: usize = 8192;
@@ -31,8 +31,8 @@ struct Piece {
 
 #[derive(Clone, Copy, Debug)]
 enum PieceCoverage {
-    /// One block's: an index into the masks.
-    Mask(u32),
+    /// One block's: an index into the masks, and the rows that are covered somewhere and whole.
+    Mask(u32, Rows, Rows),
     /// The same along each row of all blocks.
     Rows([u8; BLOCK_HEIGHT]),
 }
@@ -73,9 +73,9 @@ impl Kept {
         for piece in self.pieces.get(first_piece..).unwrap_or(&[]) {
             let place = Place { strip: piece.strip as usize, start: piece.start as usize, end: piece.end as usize };
             match piece.coverage {
-                PieceCoverage::Mask(index) => {
+                PieceCoverage::Mask(index, covered, full) => {
                     if let Some(mask) = self.masks.get(index as usize) {
-                        f(place, KeptCoverage::Mask(mask));
+                        f(place, KeptCoverage::Mask(BlockCoverage { mask, covered, full }));
                     }
                 }
                 PieceCoverage::Rows(rows) => f(place, KeptCoverage::Rows(rows)),
@@ -90,7 +90,7 @@ impl Kept {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum KeptCoverage<'a> {
     /// Of one block.
-    Mask(&'a MaskBlock),
+    Mask(BlockCoverage<'a>),
     /// The same along each row of all blocks.
     Rows([u8; BLOCK_HEIGHT]),
 }
@@ -126,15 +126,16 @@ impl<S: Simd> BlockSink<S> for KeepSink<'_> {
     }
 
     #[inline(always)]
-    fn block(&mut self, _simd: S, index: usize, mask: &MaskBlock) {
-        if mask.iter().take(self.rows).all(|row| *row == [255; BLOCK_WIDTH]) {
+    fn block(&mut self, _simd: S, index: usize, coverage: BlockCoverage<'_>) {
+        let BlockCoverage { mask, covered, full } = coverage;
+        if full.within(self.rows) == Rows::ALL.within(self.rows) {
             self.occlusion.claim(self.order, self.strip, index, index + 1);
             self.keep(index, index + 1, PieceCoverage::Rows([255; BLOCK_HEIGHT]));
             return;
         }
         let place = self.kept.masks.len() as u32;
         self.kept.masks.push(*mask);
-        self.keep(index, index + 1, PieceCoverage::Mask(place));
+        self.keep(index, index + 1, PieceCoverage::Mask(place, covered, full));
     }
 
     #[inline(always)]
@@ -154,6 +155,7 @@ impl<S: Simd> BlockSink<S> for KeepSink<'_> {
 mod tests {
     use super::*;
     use crate::num::level::{SimdLevel, dispatch};
+    use crate::surface::block::BLOCK_WIDTH;
 
     #[test]
     fn shapes_come_back_from_back_to_front_without_what_is_hidden() {
@@ -167,14 +169,14 @@ mod tests {
                 let mut sink =
                     KeepSink { kept: &mut kept, occlusion: &mut occlusion, order, strip: 0, rows: BLOCK_HEIGHT };
                 sink.run(simd, start, end, &[255; BLOCK_HEIGHT]);
-                sink.block(simd, 9, &partial);
+                sink.block(simd, 9, BlockCoverage::of(&partial));
             }
         });
         assert!(!kept.holds(9) && kept.holds(4));
         let taken = |kept: &mut Kept| {
             let (mut masks, mut runs) = (Vec::new(), Vec::new());
             kept.take(|place, coverage| match coverage {
-                KeptCoverage::Mask(mask) => masks.push((place.start, mask[3][4])),
+                KeptCoverage::Mask(coverage) => masks.push((place.start, coverage.mask[3][4])),
                 KeptCoverage::Rows(rows) => runs.push((place.start, place.end, rows[0])),
             });
             (masks, runs)

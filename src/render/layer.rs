@@ -79,8 +79,9 @@ fn mask_layer_inner<S: Simd>(
     let mut layer = layer.surface(frame.rows);
     let mut mask = mask.surface(frame.rows);
     for strip in 0..frame.strips {
+        let (mut layer, mut mask) = (layer.strip(strip), mask.strip(strip));
         for block in first..last {
-            let shown = mask.load(strip, block);
+            let shown = mask.load(block);
             let mut coverage: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
             for (y, (out, row)) in (frame.top + (strip * BLOCK_HEIGHT) as i32..).zip(coverage.iter_mut().zip(&shown)) {
                 for (x, (out, pixel)) in
@@ -90,9 +91,9 @@ fn mask_layer_inner<S: Simd>(
                     *out = if inside { kind.coverage(*pixel) } else { 0 };
                 }
             }
-            let mut pixels = layer.load(strip, block);
+            let mut pixels = layer.load(block);
             multiply_block_by_mask(simd, &mut pixels, &coverage);
-            layer.store(strip, block, &pixels);
+            layer.store(block, &pixels);
         }
     }
 }

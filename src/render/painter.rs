@@ -5,9 +5,9 @@ use fearless_simd::Simd;
 use super::band::Frame;
 use super::clip::{BandMask, ClipBlock};
 use super::coverage::Coverage;
-use super::kept::{Kept, KeptCoverage};
+use super::kept::{Kept, KeptCoverage, Place};
 use super::occlusion::Occlusion;
-use super::surface::{NO_PIXELS, ROW_BYTES, Surface};
+use super::surface::{NO_PIXELS, ROW_BYTES, StripRows, Surface};
 use crate::blend::{
     BlendMode, OpaqueRow, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row,
     over_solid_full, over_solid_row, scale_mask_row, scale_mask_row_by,
@@ -17,7 +17,7 @@ use crate::num::fixed;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
 use crate::raster::sweep::{BlockSink, RectSide};
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, Rows};
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, BlockCoverage, MaskBlock, Rows};
 
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
 
@@ -67,16 +67,15 @@ fn paint_coverage_inner<S: Simd>(
     surface: &mut Surface<'_>,
     (occlusion, visible): (&Occlusion, &[(usize, usize)]),
 ) {
-    let pattern = look.pattern();
+    let pattern = &look.pattern();
     for strip in 0..frame.strips {
         if coverage.is_empty(frame, cells, strip) {
             continue;
         }
-        let rows = surface.strip_rows(strip);
-        let top = frame.strip_top(strip);
+        let (rows, top) = (surface.strip(strip), frame.strip_top(strip));
         let end = visible.get(strip).map_or(frame.blocks, |(_, end)| *end);
         let occlusion = visible.get(strip).map(|_| occlusion);
-        let mut painter = Painter { look: &mut look, pattern, occlusion, surface, strip, rows, top };
+        let mut painter = Painter { look: &mut look, pattern, occlusion, rows, strip, top };
         coverage.sweep(simd, frame, cells, strip, end, &mut painter);
     }
 }
@@ -104,17 +103,15 @@ fn paint_kept_inner<S: Simd>(
     mut look: Look<'_>,
     surface: &mut Surface<'_>,
 ) {
-    let pattern = look.pattern();
-    let mut painter = Painter { look: &mut look, pattern, occlusion: None, surface, strip: 0, rows: 0, top: 0 };
+    let pattern = &look.pattern();
     kept.take(
         #[inline(always)]
-        |place, coverage| {
-            painter.strip = place.strip;
-            painter.rows = painter.surface.strip_rows(place.strip);
-            painter.top = frame.strip_top(place.strip);
+        |Place { strip, start, end }, coverage| {
+            let (rows, top) = (surface.strip(strip), frame.strip_top(strip));
+            let mut painter = Painter { look: &mut look, pattern, occlusion: None, rows, strip, top };
             match coverage {
-                KeptCoverage::Mask(mask) => painter.block(simd, place.start, mask),
-                KeptCoverage::Rows(rows) => painter.visible_run(simd, place.start, place.end, &rows),
+                KeptCoverage::Mask(coverage) => painter.block(simd, start, coverage),
+                KeptCoverage::Rows(rows) => painter.visible_run(simd, start, end, &rows),
             }
         },
     );
@@ -152,13 +149,12 @@ impl<'a> Look<'a> {
 struct Painter<'a, 'b, 'c> {
     look: &'a mut Look<'b>,
     /// A block's row of the one colour, if there is one.
-    pattern: [u8; ROW_BYTES],
+    pattern: &'a [u8; ROW_BYTES],
     /// What is hidden, if anything is.
     occlusion: Option<&'a Occlusion>,
-    surface: &'a mut Surface<'c>,
+    /// The strip's rows.
+    rows: StripRows<'c>,
     strip: usize,
-    /// Rows of the strip that exist.
-    rows: usize,
     /// Device y of the strip's first row.
     top: i32,
 }
@@ -170,14 +166,14 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
     }
 
     #[inline(always)]
-    fn block(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+    fn block(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>) {
         if self.look.clip.is_none() && self.look.opacity == 255 {
-            self.paint(simd, index, mask);
+            self.paint(simd, index, coverage);
             return;
         }
-        let mut mask = *mask;
+        let mut mask = *coverage.mask;
         if self.cut(simd, index, &mut mask) {
-            self.paint(simd, index, &mask);
+            self.paint(simd, index, BlockCoverage::of(&mask));
         }
     }
 
@@ -188,7 +184,7 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
             Source::Solid(color) if plain && color[3] == 255 && self.look.blend_mode == BlendMode::SourceOver => {
                 self.paint_side(simd, index, side, color);
             }
-            _ => self.block(simd, index, &side.mask(simd)),
+            _ => self.block(simd, index, BlockCoverage::of(&side.mask(simd))),
         }
     }
 
@@ -208,7 +204,7 @@ impl Painter<'_, '_, '_> {
         if self.look.clip.is_none()
             && let Source::Solid(color) = self.look.source
         {
-            let whole = || rows.iter().take(self.rows).all(|coverage| matches!(coverage, 0 | 255));
+            let whole = || rows.iter().take(self.rows.count()).all(|coverage| matches!(coverage, 0 | 255));
             match self.look.blend_mode {
                 BlendMode::SourceOver => return self.fill_run(simd, start, end, rows, color, color[3] == 255),
                 // What is covered whole is replaced, whatever the colour's alpha.
@@ -220,8 +216,9 @@ impl Painter<'_, '_, '_> {
         for (out, value) in mask.iter_mut().zip(rows) {
             *out = [*value; BLOCK_WIDTH];
         }
+        let coverage = BlockCoverage::of(&mask);
         for index in start..end {
-            self.block(simd, index, &mask);
+            self.block(simd, index, coverage);
         }
     }
 
@@ -281,7 +278,7 @@ impl Painter<'_, '_, '_> {
         color: [u8; 4],
         replaces: bool,
     ) {
-        let mut lines = self.surface.lines(self.strip, start, end);
+        let mut lines = self.rows.lines(start, end);
         for (row, &coverage) in rows.iter().enumerate() {
             if coverage == 0 {
                 continue;
@@ -290,10 +287,10 @@ impl Painter<'_, '_, '_> {
             if coverage == 255 && replaces {
                 // Whole blocks at a time: four bytes at a time would be stored one by one.
                 for pixels in blocks {
-                    *pixels = self.pattern;
+                    *pixels = *self.pattern;
                 }
                 for (byte, pattern) in tail.iter_mut().zip(self.pattern) {
-                    *byte = pattern;
+                    *byte = *pattern;
                 }
                 continue;
             }
@@ -319,30 +316,29 @@ impl Painter<'_, '_, '_> {
 
     /// Draws one block by its final coverage.
     #[inline(always)]
-    fn paint<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+    fn paint<S: Simd>(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>) {
         match self.look.source {
             Source::Solid(color) if self.look.blend_mode == BlendMode::SourceOver => {
-                self.paint_solid(simd, index, mask, color);
+                self.paint_solid(simd, index, coverage, color);
             }
-            _ => self.paint_pixels(simd, index, mask),
+            _ => self.paint_pixels(simd, index, coverage),
         }
     }
 
     /// Source-over of one colour, by far the most frequent.
     #[inline(never)]
-    fn paint_solid<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock, color: [u8; 4]) {
+    fn paint_solid<S: Simd>(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>, color: [u8; 4]) {
         simd.vectorize(
             #[inline(always)]
-            || self.paint_solid_inner(simd, index, mask, color),
+            || self.paint_solid_inner(simd, index, coverage, color),
         );
     }
 
     #[inline(always)]
-    fn paint_solid_inner<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock, color: [u8; 4]) {
-        let (pattern, opaque) = (&self.pattern, color[3] == 255);
-        let covered = Rows::covered(simd, mask);
-        self.surface.with_block(
-            self.strip,
+    fn paint_solid_inner<S: Simd>(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>, color: [u8; 4]) {
+        let (pattern, opaque) = (self.pattern, color[3] == 255);
+        let BlockCoverage { mask, covered, full } = coverage;
+        self.rows.with_block(
             index,
             #[inline(always)]
             |mut rows| {
@@ -358,7 +354,6 @@ impl Painter<'_, '_, '_> {
                     );
                     return;
                 }
-                let full = Rows::full(simd, mask);
                 rows.each(
                     full,
                     #[inline(always)]
@@ -389,8 +384,7 @@ impl Painter<'_, '_, '_> {
     #[inline(always)]
     fn paint_side_inner<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide, color: [u8; 4]) {
         let whole = OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE as u32));
-        self.surface.with_block(
-            self.strip,
+        self.rows.with_block(
             index,
             #[inline(always)]
             |mut rows| {
@@ -409,40 +403,39 @@ impl Painter<'_, '_, '_> {
 
     /// Any blend of any source.
     #[inline(never)]
-    fn paint_pixels<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+    fn paint_pixels<S: Simd>(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>) {
         simd.vectorize(
             #[inline(always)]
-            || self.paint_pixels_inner(simd, index, mask),
+            || self.paint_pixels_inner(simd, index, coverage),
         );
     }
 
     #[inline(always)]
-    fn paint_pixels_inner<S: Simd>(&mut self, simd: S, index: usize, mask: &MaskBlock) {
+    fn paint_pixels_inner<S: Simd>(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>) {
+        let BlockCoverage { mask, covered, full } = coverage;
         let over = self.look.blend_mode == BlendMode::SourceOver;
         let mut source = NO_PIXELS;
         let mut opaque = false;
         match &mut self.look.source {
-            Source::Solid(_) => source = [self.pattern; BLOCK_HEIGHT],
+            Source::Solid(_) => source = [*self.pattern; BLOCK_HEIGHT],
             Source::Paint(paint) => {
                 opaque = paint.is_opaque();
                 fetch_block(simd, paint, (index * BLOCK_WIDTH) as i32, self.top, &mut source);
             }
             Source::Layer(layer) => {
-                source = layer.load(self.strip, index);
+                source = layer.strip(self.strip).load(index);
                 if over && source == NO_PIXELS {
                     return;
                 }
             }
         }
         if !over {
-            let mut pixels = self.surface.load(self.strip, index);
+            let mut pixels = self.rows.load(index);
             composite_block(simd, self.look.blend_mode, &mut pixels, &source, mask);
-            self.surface.store(self.strip, index, &pixels);
+            self.rows.store(index, &pixels);
             return;
         }
-        let (covered, full) = (Rows::covered(simd, mask), Rows::full(simd, mask));
-        self.surface.with_block(
-            self.strip,
+        self.rows.with_block(
             index,
             #[inline(always)]
             |mut rows| {

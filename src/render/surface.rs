@@ -28,44 +28,63 @@ impl<'a> Surface<'a> {
         Surface { data: self.data, ..*self }
     }
 
-    /// The rows of strip `strip` that exist: 0 ..= 8.
+    /// The rows of strip `strip` that exist.
     #[inline(always)]
-    pub(super) fn strip_rows(&self, strip: usize) -> usize {
-        self.rows.saturating_sub(strip * BLOCK_HEIGHT).min(BLOCK_HEIGHT)
+    pub(super) fn strip(&mut self, strip: usize) -> StripRows<'_> {
+        let Self { stride, first_block, row_bytes: width, rows, .. } = *self;
+        let count = rows.saturating_sub(strip * BLOCK_HEIGHT).min(BLOCK_HEIGHT);
+        let bytes = self.data.get_mut(strip * BLOCK_HEIGHT * stride..).unwrap_or(&mut []);
+        StripRows { bytes, stride, first_block, width, count }
+    }
+}
+
+/// A strip's rows.
+pub(super) struct StripRows<'a> {
+    bytes: &'a mut [u8],
+    stride: usize,
+    first_block: usize,
+    /// Bytes in a row that can be drawn.
+    width: usize,
+    /// How many there are: 0 ..= 8.
+    count: usize,
+}
+
+impl StripRows<'_> {
+    pub(super) fn count(&self) -> usize {
+        self.count
     }
 
-    /// The rows of strip `strip` in blocks `start..end`, as far as they exist.
+    /// The rows in blocks `start..end`, as far as they exist.
     #[inline(always)]
-    pub(super) fn lines(&mut self, strip: usize, start: usize, end: usize) -> Lines<'_> {
-        let from = (start.saturating_sub(self.first_block) * ROW_BYTES).min(self.row_bytes);
-        let to = (end.saturating_sub(self.first_block) * ROW_BYTES).min(self.row_bytes);
-        let count = self.strip_rows(strip);
-        let bytes = self.data.get_mut(strip * BLOCK_HEIGHT * self.stride + from..).unwrap_or(&mut []);
-        Lines { bytes, stride: self.stride, width: to.saturating_sub(from), count }
+    pub(super) fn lines(&mut self, start: usize, end: usize) -> Lines<'_> {
+        let from = (start.saturating_sub(self.first_block) * ROW_BYTES).min(self.width);
+        let to = (end.saturating_sub(self.first_block) * ROW_BYTES).min(self.width);
+        let bytes = self.bytes.get_mut(from..).unwrap_or(&mut []);
+        Lines { bytes, stride: self.stride, width: to.saturating_sub(from), count: self.count }
     }
 
     /// Calls `f` with a block's rows. At the right side, where rows end inside the block, these are a copy.
     #[inline(always)]
-    pub(super) fn with_block(&mut self, strip: usize, block: usize, f: impl FnOnce(BlockRows<'_>)) {
-        let mut lines = self.lines(strip, block, block + 1);
-        let mut copy = if lines.width < ROW_BYTES { Some(lines.cut_block()) } else { None };
-        let count = lines.count;
+    pub(super) fn with_block(&mut self, block: usize, f: impl FnOnce(BlockRows<'_>)) {
+        let &mut Self { stride, count, .. } = self;
+        let from = block.wrapping_sub(self.first_block).wrapping_mul(ROW_BYTES);
+        let is_whole = block >= self.first_block && from + ROW_BYTES <= self.width;
+        let mut copy = if is_whole { None } else { Some(self.lines(block, block + 1).cut_block()) };
         // One place that calls `f`, which is long.
         f(match &mut copy {
             Some(copy) => BlockRows { bytes: copy.as_flattened_mut(), stride: ROW_BYTES, count },
-            None => BlockRows { bytes: lines.bytes, stride: lines.stride, count },
+            None => BlockRows { bytes: self.bytes.get_mut(from..).unwrap_or(&mut []), stride, count },
         });
         if let Some(copy) = &copy {
-            self.lines(strip, block, block + 1).put_cut_block(copy);
+            self.lines(block, block + 1).put_cut_block(copy);
         }
     }
 
     /// A copy of a block; pixels that do not exist are transparent.
     #[inline(always)]
-    pub(super) fn load(&mut self, strip: usize, block: usize) -> PixelBlock {
+    pub(super) fn load(&mut self, block: usize) -> PixelBlock {
         let mut copy = NO_PIXELS;
         self.with_block(
-            strip,
             block,
             #[inline(always)]
             |mut rows| {
@@ -85,9 +104,8 @@ impl<'a> Surface<'a> {
 
     /// Writes a block back.
     #[inline(always)]
-    pub(super) fn store(&mut self, strip: usize, block: usize, pixels: &PixelBlock) {
+    pub(super) fn store(&mut self, block: usize, pixels: &PixelBlock) {
         self.with_block(
-            strip,
             block,
             #[inline(always)]
             |mut rows| {

@@ -3,9 +3,6 @@
 //! A rasterizer says how much of each pixel is covered ([`MaskBlock`]), a paint gives colours
 //! ([`PixelBlock`]), and blending joins the two with what is there. Neither side knows the other.
 
-use fearless_simd::i32x4;
-use fearless_simd::prelude::*;
-
 /// Columns of a block.
 pub(crate) const BLOCK_WIDTH: usize = 16;
 /// Rows of a block; also the rows of a strip, the rasterizer's unit of work.
@@ -17,41 +14,29 @@ pub(crate) type MaskBlock = [[u8; BLOCK_WIDTH]; BLOCK_HEIGHT];
 /// Premultiplied RGBA8 pixels of a block, rows top down.
 pub(crate) type PixelBlock = [[u8; BLOCK_WIDTH * 4]; BLOCK_HEIGHT];
 
-/// Some of a block's rows: bit 4 · i stands for row i.
+/// Some of a block's rows: bit i stands for row i.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Rows(u32);
+pub(crate) struct Rows(u8);
 
 impl Rows {
-    pub(crate) const ALL: Self = Self(0x1111_1111);
+    pub(crate) const ALL: Self = Self(u8::MAX);
 
-    /// Those that are covered somewhere.
+    /// Those whose bits are set.
     #[inline(always)]
-    pub(crate) fn covered<S: Simd>(simd: S, mask: &MaskBlock) -> Self {
-        Self::ALL.without(Self::alike(simd, mask, 0))
+    pub(crate) fn of_bits(bits: u8) -> Self {
+        Self(bits)
     }
 
-    /// Those that are covered whole.
+    /// Those for which `test` holds.
     #[inline(always)]
-    pub(crate) fn full<S: Simd>(simd: S, mask: &MaskBlock) -> Self {
-        Self::alike(simd, mask, -1)
-    }
-
-    /// Those of which every four bytes are `word`.
-    #[inline(always)]
-    fn alike<S: Simd>(simd: S, mask: &MaskBlock, word: i32) -> Self {
-        let mut equal = 0;
-        // Row by row, as masks are written: to read two at a time would wait for both to reach the cache.
-        for (row, values) in mask.iter().enumerate() {
-            let words = i32x4::load_array(simd, bytemuck::cast(*values));
-            equal |= (words.simd_eq(i32x4::splat(simd, word)).to_bitmask() as u32) << (4 * row);
-        }
-        Self(equal & equal >> 1 & equal >> 2 & equal >> 3 & Self::ALL.0)
+    fn that<T>(rows: &[T; BLOCK_HEIGHT], test: impl Fn(&T) -> bool) -> Self {
+        Self(rows.iter().enumerate().fold(0, |bits, (row, value)| bits | u8::from(test(value)) << row))
     }
 
     /// Those among the first `count` rows.
     #[inline(always)]
     pub(crate) fn within(self, count: usize) -> Self {
-        if count < BLOCK_HEIGHT { Self(self.0 & ((1 << (4 * count)) - 1)) } else { self }
+        if count < BLOCK_HEIGHT { Self(self.0 & ((1 << count) - 1)) } else { self }
     }
 
     #[inline(always)]
@@ -62,10 +47,32 @@ impl Rows {
     /// Calls `f` with each row, downwards.
     #[inline(always)]
     pub(crate) fn for_each(self, mut f: impl FnMut(usize)) {
-        let mut bits = self.0;
+        let mut bits = u32::from(self.0);
         while bits != 0 {
-            f(bits.trailing_zeros() as usize / 4 % BLOCK_HEIGHT);
+            f(bits.trailing_zeros() as usize % BLOCK_HEIGHT);
             bits &= bits - 1;
+        }
+    }
+}
+
+/// The coverage of a block, and what is known of its rows: most blocks at an outline have some without coverage.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BlockCoverage<'a> {
+    pub(crate) mask: &'a MaskBlock,
+    /// The rows that are covered somewhere.
+    pub(crate) covered: Rows,
+    /// The rows that are covered whole.
+    pub(crate) full: Rows,
+}
+
+impl<'a> BlockCoverage<'a> {
+    /// That of a mask of which nothing is known.
+    #[inline(always)]
+    pub(crate) fn of(mask: &'a MaskBlock) -> Self {
+        Self {
+            mask,
+            covered: Rows::that(mask, |row| *row != [0; BLOCK_WIDTH]),
+            full: Rows::that(mask, |row| *row == [u8::MAX; BLOCK_WIDTH]),
         }
     }
 }
@@ -73,7 +80,6 @@ impl Rows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::num::level::{SimdLevel, dispatch};
 
     #[test]
     fn rows_are_found_by_their_coverage() {
@@ -90,13 +96,11 @@ mod tests {
             rows.for_each(|row| list.push(row));
             list
         };
-        for level in SimdLevel::available() {
-            let (covered, full) = dispatch!(level, simd => (Rows::covered(simd, &mask), Rows::full(simd, &mask)));
-            assert_eq!(listed(covered), [1, 2, 4, 5, 7], "{level:?}");
-            assert_eq!(listed(full), [2, 7], "{level:?}");
-            assert_eq!(listed(covered.without(full)), [1, 4, 5], "{level:?}");
-            assert_eq!(listed(covered.within(5)), [1, 2, 4], "{level:?}");
-            assert_eq!((listed(covered.within(0)), covered.within(8)), (Vec::new(), covered));
-        }
+        let BlockCoverage { covered, full, .. } = BlockCoverage::of(&mask);
+        assert_eq!(listed(covered), [1, 2, 4, 5, 7]);
+        assert_eq!(listed(full), [2, 7]);
+        assert_eq!(listed(covered.without(full)), [1, 4, 5]);
+        assert_eq!(listed(covered.within(5)), [1, 2, 4]);
+        assert_eq!((listed(covered.within(0)), covered.within(8)), (Vec::new(), covered));
     }
 }
