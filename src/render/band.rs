@@ -14,7 +14,7 @@ use super::hidden::{find_hidden, find_visible};
 use super::kept::Kept;
 use super::layer::{LayerBuffer, mask_layer, open_surface};
 use super::occlusion::Occlusion;
-use super::painter::{Look, Source, paint_coverage, paint_kept};
+use super::painter::{Look, Source, paint_coverage, paint_kept, paint_rect};
 use super::plan::Plan;
 use super::prepare::Chunk;
 use super::surface::Surface;
@@ -116,7 +116,8 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                 continue;
             }
             if let Content::Rect(rect, color) = item.content {
-                paint_rect(simd, frame, target, scratch, rect, color);
+                let BandScratch { layers, occlusion, .. } = &mut *scratch;
+                paint_rect(simd, frame, rect, color, &mut open_surface(frame, target, layers), occlusion);
                 continue;
             }
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };
@@ -211,24 +212,6 @@ fn paint_draw_inner<S: Simd>(
     let clip = clips.current(draw.clip);
     let look = Look::new(draw, paint, clip);
     paint_coverage(simd, frame, cells, coverage, look, surface, (occlusion, visible));
-}
-
-/// Draws a rectangle in one colour over what is there.
-#[inline(always)]
-fn paint_rect<S: Simd>(
-    simd: S,
-    frame: &Frame<'_>,
-    target: &mut Surface<'_>,
-    scratch: &mut BandScratch,
-    rect: FixedRect,
-    color: [u8; 4],
-) {
-    if find_visible(frame, scratch, rect.pixels()) {
-        let BandScratch { cells, layers, occlusion, visible, .. } = scratch;
-        let surface = &mut open_surface(frame, target, layers);
-        let look = Look { source: Source::Solid(color), blend_mode: BlendMode::SourceOver, opacity: 255, clip: None };
-        paint_coverage(simd, frame, cells, Coverage::Rect(rect), look, surface, (occlusion, visible));
-    }
 }
 
 /// Draws a finished layer onto the one below, or onto the target.

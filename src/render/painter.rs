@@ -13,11 +13,12 @@ use crate::blend::{
     over_solid_full, over_solid_row, scale_mask_row, scale_mask_row_by,
 };
 use crate::display_list::Draw;
+use crate::geom::FixedRect;
 use crate::num::fixed;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
-use crate::raster::sweep::{BlockSink, RectSide};
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, BlockCoverage, MaskBlock, Rows};
+use crate::raster::sweep::{BlockSink, RectSide, sweep_rect};
+use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, BlockCoverage, MaskBlock};
 
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
 
@@ -77,6 +78,45 @@ fn paint_coverage_inner<S: Simd>(
         let occlusion = visible.get(strip).map(|_| occlusion);
         let mut painter = Painter { look: &mut look, pattern, occlusion, rows, strip, top };
         coverage.sweep(simd, frame, cells, strip, end, &mut painter);
+    }
+}
+
+/// Draws a rectangle in one colour over what is there: its coverage is reckoned strip by strip.
+#[inline(never)]
+pub(super) fn paint_rect<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    rect: FixedRect,
+    color: [u8; 4],
+    surface: &mut Surface<'_>,
+    occlusion: &Occlusion,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || paint_rect_inner(simd, frame, rect, color, surface, occlusion),
+    )
+}
+
+#[inline(always)]
+fn paint_rect_inner<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    rect: FixedRect,
+    color: [u8; 4],
+    surface: &mut Surface<'_>,
+    occlusion: &Occlusion,
+) {
+    let mut look = Look { source: Source::Solid(color), blend_mode: BlendMode::SourceOver, opacity: 255, clip: None };
+    let pattern = &look.pattern();
+    let bounds = rect.pixels();
+    let strip_of = |y: i32| ((y - frame.top).max(0) as usize / BLOCK_HEIGHT).min(frame.strips);
+    for strip in strip_of(bounds.top)..strip_of(bounds.bottom + (BLOCK_HEIGHT as i32 - 1)) {
+        let (first, end) = occlusion.visible(strip, bounds);
+        if first < end {
+            let (rows, top) = (surface.strip(strip), frame.strip_top(strip));
+            let mut painter = Painter { look: &mut look, pattern, occlusion: Some(occlusion), rows, strip, top };
+            sweep_rect(simd, rect, top << fixed::SHIFT, end, &mut painter);
+        }
     }
 }
 
@@ -278,40 +318,39 @@ impl Painter<'_, '_, '_> {
         color: [u8; 4],
         replaces: bool,
     ) {
-        let mut lines = self.rows.lines(start, end);
-        for (row, &coverage) in rows.iter().enumerate() {
-            if coverage == 0 {
-                continue;
-            }
-            let (blocks, tail) = lines.row(row).as_chunks_mut::<ROW_BYTES>();
-            if coverage == 255 && replaces {
-                // Whole blocks at a time: four bytes at a time would be stored one by one.
-                for pixels in blocks {
-                    *pixels = *self.pattern;
+        let pattern = self.pattern;
+        self.rows.lines(start, end).with(
+            rows,
+            #[inline(always)]
+            |&coverage, line| {
+                if coverage == 0 {
+                    return;
                 }
-                for (byte, pattern) in tail.iter_mut().zip(self.pattern) {
-                    *byte = *pattern;
+                let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
+                if coverage == 255 && replaces {
+                    // Whole blocks at a time: four bytes at a time would be stored one by one.
+                    for pixels in blocks {
+                        *pixels = *pattern;
+                    }
+                    for (byte, pattern) in tail.iter_mut().zip(pattern) {
+                        *byte = *pattern;
+                    }
+                    return;
                 }
-                continue;
-            }
-            for pixels in blocks {
                 if coverage == 255 {
-                    over_solid_full(simd, pixels, color);
+                    for pixels in blocks {
+                        over_solid_full(simd, pixels, color);
+                    }
                 } else {
-                    over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
+                    for pixels in blocks {
+                        over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
+                    }
                 }
-            }
-            if !tail.is_empty() {
-                let mut pixels = [0; ROW_BYTES];
-                for (copy, byte) in pixels.iter_mut().zip(tail.iter()) {
-                    *copy = *byte;
+                if !tail.is_empty() {
+                    over_cut_row(simd, tail, color, coverage);
                 }
-                over_solid_row(simd, &mut pixels, color, &[coverage; BLOCK_WIDTH]);
-                for (byte, copy) in tail.iter_mut().zip(pixels) {
-                    *byte = copy;
-                }
-            }
-        }
+            },
+        );
     }
 
     /// Draws one block by its final coverage.
@@ -388,13 +427,13 @@ impl Painter<'_, '_, '_> {
             index,
             #[inline(always)]
             |mut rows| {
-                rows.each(
-                    Rows::ALL,
+                rows.with(
+                    &side.heights,
                     #[inline(always)]
-                    |row, pixels| match side.heights.get(row) {
-                        None | Some(0) => {}
-                        Some(256) => whole.over(simd, pixels),
-                        Some(part) => over_opaque_row(simd, pixels, color, &side.row(simd, *part)),
+                    |height, pixels| match height {
+                        0 => {}
+                        256 => whole.over(simd, pixels),
+                        part => over_opaque_row(simd, pixels, color, &side.row(simd, *part)),
                     },
                 );
             },
@@ -462,5 +501,18 @@ impl Painter<'_, '_, '_> {
                 );
             },
         );
+    }
+}
+
+/// Source-over of one colour on a part of a block's row, by the same coverage throughout.
+#[inline(always)]
+fn over_cut_row<S: Simd>(simd: S, part: &mut [u8], color: [u8; 4], coverage: u8) {
+    let mut pixels = [0; ROW_BYTES];
+    for (copy, byte) in pixels.iter_mut().zip(part.iter()) {
+        *copy = *byte;
+    }
+    over_solid_row(simd, &mut pixels, color, &[coverage; BLOCK_WIDTH]);
+    for (byte, copy) in part.iter_mut().zip(pixels) {
+        *byte = copy;
     }
 }

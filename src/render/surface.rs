@@ -133,9 +133,21 @@ pub(super) struct Lines<'a> {
 }
 
 impl Lines<'_> {
+    /// Applies `f` to each value and its row's part, downwards.
+    #[inline(always)]
+    pub(super) fn with<T>(&mut self, values: &[T; BLOCK_HEIGHT], mut f: impl FnMut(&T, &mut [u8])) {
+        let mut rest = &mut *self.bytes;
+        for value in values.iter().take(self.count) {
+            if let Some(part) = rest.get_mut(..self.width) {
+                f(value, part);
+            }
+            rest = rest.get_mut(self.stride..).unwrap_or(&mut []);
+        }
+    }
+
     /// The part of row `row` of the strip; nothing if there is no such row.
     #[inline(always)]
-    pub(super) fn row(&mut self, row: usize) -> &mut [u8] {
+    fn row(&mut self, row: usize) -> &mut [u8] {
         if row >= self.count {
             return &mut [];
         }
@@ -173,6 +185,18 @@ pub(super) struct BlockRows<'a> {
 }
 
 impl BlockRows<'_> {
+    /// Applies `f` to each value and the pixels of its row, downwards.
+    #[inline(always)]
+    pub(super) fn with<T>(&mut self, values: &[T; BLOCK_HEIGHT], mut f: impl FnMut(&T, &mut [u8; ROW_BYTES])) {
+        let mut rest = &mut *self.bytes;
+        for value in values.iter().take(self.count) {
+            if let Some(pixels) = rest.first_chunk_mut::<ROW_BYTES>() {
+                f(value, pixels);
+            }
+            rest = rest.get_mut(self.stride..).unwrap_or(&mut []);
+        }
+    }
+
     /// Applies `f` to the numbers and pixels of those of `rows` that exist.
     #[inline(always)]
     pub(super) fn each(&mut self, rows: Rows, mut f: impl FnMut(usize, &mut [u8; ROW_BYTES])) {
