@@ -9,7 +9,10 @@
 //! So a pixel's own area is the difference of two such terms, plus 2·d·s for each 1/256 of it that lies right of x_right:
 //! no case to distinguish, and no branch. Cells hold the difference of each pixel's area to its left neighbour's; that
 //! of the last is what the sum still lacks, so that what winds around the pixels right of a piece is exact, whatever
-//! was rounded.
+//! was rounded. Pieces of three columns and more have a shorter formula ([`add_columns`]), by which pixels that a part has passed
+//! in a row while the piece goes on in others are right to some 2^-17 of their area.
+//!
+//! Slope and steepness are the whole edge's; where it enters and leaves a strip is rounded to 1/4096 pixel.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};

@@ -32,6 +32,9 @@ use crate::raster::sample::SampleScratch;
 use crate::style::Antialias;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
+/// Pictures of more pixels, 16 MiB, are taken not to stay in a cache.
+const UNCACHED_PIXELS: u64 = 1 << 22;
+
 /// Working memory of one thread.
 #[derive(Debug, Default)]
 pub(super) struct BandScratch {
@@ -62,6 +65,9 @@ pub(super) struct Frame<'a> {
     pub(super) blocks: usize,
     /// The first and the end of the blocks that are drawn.
     pub(super) seen: (usize, usize),
+    /// Whether the picture is larger than a cache. Memory that is written line after line need not be read first: what covers
+    /// all of a band is then quicker written whole than where nothing will hide it.
+    is_uncached: bool,
 }
 
 impl<'a> Frame<'a> {
@@ -69,7 +75,8 @@ impl<'a> Frame<'a> {
     pub(super) fn new(drawing: &Drawing<'a>, index: usize, top: i32, rows: usize, seen: (usize, usize)) -> Self {
         let Drawing { list, plan, chunks, frame } = *drawing;
         let (strips, blocks) = (rows.div_ceil(BLOCK_HEIGHT), (frame.width() as usize).div_ceil(BLOCK_WIDTH));
-        Self { list, plan, chunks, index, top, rows, strips, blocks, seen }
+        let is_uncached = u64::from(frame.width()) * u64::from(frame.height()) > UNCACHED_PIXELS;
+        Self { list, plan, chunks, index, top, rows, strips, blocks, seen, is_uncached }
     }
 
     /// The band's device pixels, up to the end of the last block.
@@ -116,6 +123,10 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                 continue;
             }
             if let Content::Rect(rect, color) = item.content {
+                if place == 0 && frame.is_uncached && covers(frame, target, rect) && color[3] == 255 {
+                    target.fill(simd, color);
+                    continue;
+                }
                 let BandScratch { layers, occlusion, .. } = &mut *scratch;
                 paint_rect(simd, frame, rect, color, &mut open_surface(frame, target, layers), occlusion);
                 continue;
@@ -169,6 +180,12 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
             }
         }
     }
+}
+
+/// Whether a rectangle covers all of a band's rows.
+fn covers(frame: &Frame<'_>, target: &Surface<'_>, rect: FixedRect) -> bool {
+    let area = FixedRect::of_pixels(target.area(frame.top));
+    rect.left <= area.left && rect.top <= area.top && rect.right >= area.right && rect.bottom >= area.bottom
 }
 
 /// Draws one shape onto the open layer, or onto the target.

@@ -109,17 +109,26 @@ impl Occlusion {
         (seen_first, seen_end)
     }
 
-    /// The first of the blocks `start..end` that can be seen, with those right after it in its word: from where to where.
+    /// The first of the blocks `start..end` that can be seen, with those right after it: from where to where.
     #[inline(always)]
     pub(super) fn visible_run(&self, strip: usize, mut start: usize, end: usize) -> Option<(usize, usize)> {
+        let ones = |word: u64| word.trailing_ones() as usize;
+        let word_of = |block: usize| self.hidden.get(strip * self.words + block / 64).copied().unwrap_or(0);
+        let limit_of = |block: usize| end.min((block / 64 + 1) * 64);
         while start < end {
-            let word = self.hidden.get(strip * self.words + start / 64).copied().unwrap_or(0);
-            let limit = end.min((start / 64 + 1) * 64);
-            let ones = |word: u64| word.trailing_ones() as usize;
+            let (word, limit) = (word_of(start), limit_of(start));
             let from = start + ones(word >> (start % 64));
             if from < limit {
-                let run = ones(!word >> (from % 64));
-                return Some((from, limit.min(from + run)));
+                let mut to = limit.min(from + ones(!word >> (from % 64)));
+                // Rows are written in one go, beyond a word's end.
+                while to % 64 == 0 && to < end {
+                    let run = ones(!word_of(to));
+                    if run == 0 {
+                        break;
+                    }
+                    to = limit_of(to).min(to + run);
+                }
+                return Some((from, to));
             }
             start = limit;
         }
@@ -196,8 +205,10 @@ mod tests {
         assert_eq!((occlusion.visible_run(0, 60, 67), occlusion.visible_run(0, 68, 69)), (None, Some((68, 69))));
         assert_eq!(
             (occlusion.visible_run(1, 0, 70), occlusion.visible_run(1, 64, 70)),
-            (Some((0, 64)), Some((64, 70)))
+            (Some((0, 70)), Some((64, 70)))
         );
+        occlusion.claim(3, 1, 66, 70);
+        assert_eq!((occlusion.visible_run(1, 1, 70), occlusion.visible_run(1, 66, 70)), (Some((1, 66)), None));
         occlusion.release(3);
         assert!(!occlusion.is_some() && occlusion.visible(1, bounds) == (1, 70));
     }

@@ -7,7 +7,7 @@ use super::clip::{BandMask, ClipBlock};
 use super::coverage::Coverage;
 use super::kept::{Kept, KeptCoverage, Place};
 use super::occlusion::Occlusion;
-use super::surface::{NO_PIXELS, ROW_BYTES, StripRows, Surface};
+use super::surface::{NO_PIXELS, ROW_BYTES, StripRows, Surface, fill_line};
 use crate::blend::{
     BlendMode, OpaqueRow, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row,
     over_solid_full, over_solid_row, scale_mask_row, scale_mask_row_by,
@@ -318,7 +318,6 @@ impl Painter<'_, '_, '_> {
         color: [u8; 4],
         replaces: bool,
     ) {
-        let pattern = self.pattern;
         self.rows.lines(start, end).with(
             rows,
             #[inline(always)]
@@ -326,17 +325,10 @@ impl Painter<'_, '_, '_> {
                 if coverage == 0 {
                     return;
                 }
-                let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
                 if coverage == 255 && replaces {
-                    // Whole blocks at a time: four bytes at a time would be stored one by one.
-                    for pixels in blocks {
-                        *pixels = *pattern;
-                    }
-                    for (byte, pattern) in tail.iter_mut().zip(pattern) {
-                        *byte = *pattern;
-                    }
-                    return;
+                    return fill_line(simd, line, color);
                 }
+                let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
                 if coverage == 255 {
                     for pixels in blocks {
                         over_solid_full(simd, pixels, color);

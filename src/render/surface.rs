@@ -1,5 +1,9 @@
 //! The rows of a band that is being painted: the target's own, or a layer's.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{u8x32, u32x8};
+
+use crate::geom::IntRect;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, PixelBlock, Rows};
 
 /// Bytes of a block's row.
@@ -26,6 +30,25 @@ impl<'a> Surface<'a> {
     /// The same rows, for a shorter time.
     pub(super) fn reborrow(&mut self) -> Surface<'_> {
         Surface { data: self.data, ..*self }
+    }
+
+    /// The device pixels that it holds, if its first row lies at `top`.
+    pub(super) fn area(&self, top: i32) -> IntRect {
+        let left = (self.first_block * BLOCK_WIDTH) as i32;
+        IntRect { left, top, right: left + (self.row_bytes / 4) as i32, bottom: top + self.rows as i32 }
+    }
+
+    /// Makes every pixel this one.
+    #[inline(never)]
+    pub(super) fn fill<S: Simd>(&mut self, simd: S, color: [u8; 4]) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for line in self.data.chunks_mut(self.stride.max(1)).take(self.rows) {
+                    fill_line(simd, line.get_mut(..self.row_bytes).unwrap_or(&mut []), color);
+                }
+            },
+        );
     }
 
     /// The rows of strip `strip` that exist.
@@ -120,6 +143,20 @@ impl StripRows<'_> {
                 );
             },
         );
+    }
+}
+
+/// Fills part of a row with one colour.
+#[inline(always)]
+pub(super) fn fill_line<S: Simd>(simd: S, line: &mut [u8], color: [u8; 4]) {
+    // Not four bytes at a time, which would be stored one by one.
+    let eight: u8x32<S> = u32x8::splat(simd, u32::from_ne_bytes(color)).bitcast();
+    let (blocks, tail) = line.as_chunks_mut::<32>();
+    for pixels in blocks {
+        eight.store_array(pixels);
+    }
+    for pixel in tail.as_chunks_mut::<4>().0 {
+        *pixel = color;
     }
 }
 

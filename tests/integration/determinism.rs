@@ -187,3 +187,38 @@ fn rectangles_are_painted_as_paths_are() {
         }
     }
 }
+
+/// Beyond 4,194,304 pixels what covers a whole band is written in one go, hidden or not.
+#[test]
+fn large_pictures_are_as_small_ones() {
+    // The right side cuts a block, and eight pixels; the lower side a strip.
+    const SIZE: (u32, u32) = (2301, 2003);
+    assert!(SIZE.0 * SIZE.1 > 1 << 22);
+    let colors = [Color::BLUE, Color::from_rgba(0.3, 0.2, 0.1, 0.4)];
+    let draw = |canvas: &mut Canvas<'_>, (x, y): (f32, f32)| {
+        canvas.clear(colors[0]);
+        canvas.translate(-x, -y);
+        // Its edges go down by as much as across: where they are cut is exact.
+        let diamond = [(1100.25, -300.5), (2400.25, 999.5), (1100.25, 2299.5), (-199.75, 999.5)].map(Point::from);
+        canvas.fill_polygon(&diamond, FillRule::NonZero, Color::RED);
+        canvas.fill_rect(Rect::from_ltrb(1990.25, 1500.5, 2400.0, 2400.0), colors[1]);
+    };
+    for level in SimdLevel::available() {
+        for threads in [1, 2] {
+            let settings = RenderSettings::default().with_level(level).with_threads(threads);
+            let mut large = Canvas::new(SIZE.0, SIZE.1).unwrap();
+            large.set_settings(settings);
+            draw(&mut large, (0.0, 0.0));
+            let large = large.into_pixmap();
+            for (x, y) in [(0, 770), (0, 0), (2237, 1939), (1780, 330), (1000, 1000)] {
+                let mut small = Canvas::new(64, 64).unwrap();
+                draw(&mut small, (x as f32, y as f32));
+                let small = small.into_pixmap();
+                let differs = (0..64 * 64)
+                    .map(|i| (i % 64, i / 64))
+                    .find(|(i, j)| large.pixel(x + i, y + j).is_some_and(|pixel| small.pixel(*i, *j) != Some(pixel)));
+                assert_eq!(differs, None, "at ({x}, {y}), {level:?}, {threads} threads");
+            }
+        }
+    }
+}
