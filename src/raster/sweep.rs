@@ -285,12 +285,14 @@ fn uniform<S: Simd, K: BlockSink<S>>(simd: S, coverage: u16x16<S>, start: usize,
     }
 }
 
-/// Coverage of a pixel whose sum, at most full, is so much in quarters: scaled to 0 ..= 255 and rounded.
-///
-/// In words, of which one instruction multiplies two columns: ⌊(v + 64) · 510 / 2^16⌋ = ⌊v · 255 / 2^15 + 0.498⌋.
+/// What of a word's sum makes coverage: see [`scaled`].
 const HALF: u16 = 65;
 const SCALE: u16 = 510;
 
+/// Coverage of a pixel of which so much is covered, in 1/2^15: scaled to 0 ..= 255 and rounded.
+///
+/// In words, of which one instruction multiplies two columns: ⌊(v + 65) · 510 / 2^16⌋ = ⌊v · 255 / 2^15 + 0.506⌋. A little more than
+/// half, since v was rounded down; what is covered by half is 128.
 #[inline(always)]
 fn scaled<S: Simd>(quarters: u16x16<S>) -> u16x16<S> {
     high_product(quarters + HALF, SCALE)
@@ -299,10 +301,10 @@ fn scaled<S: Simd>(quarters: u16x16<S>) -> u16x16<S> {
 /// As [`scaled`], for areas in 1/65,536.
 #[inline(always)]
 fn scaled_area(area: u32) -> u8 {
-    (((area >> 1) + u32::from(HALF)) * u32::from(SCALE) >> 16) as u8
+    ((((area >> 1) + u32::from(HALF)) * u32::from(SCALE)) >> 16) as u8
 }
 
-/// Quarters of two columns' sums, modulo 2^16: of the first in even lanes, of the second in odd ones.
+/// Quarters of two columns' sums, which are 1/2^15 of a pixel, modulo 2^16: of the first in even lanes, of the second in odd ones.
 #[inline(always)]
 fn quarters<S: Simd>(first: i32x8<S>, second: i32x8<S>) -> u16x16<S> {
     const LOW: i32 = 0xffff;
@@ -363,6 +365,29 @@ mod tests {
             for (row, value) in self.0.iter_mut().zip(rows) {
                 row[start * BLOCK_WIDTH..end * BLOCK_WIDTH].fill(*value);
             }
+        }
+    }
+
+    #[test]
+    fn coverage_is_the_area_rounded_at_every_level() {
+        for area in 0..=1 << 16_u32 {
+            let (got, exact) = (scaled_area(area), f64::from(area) * 255.0 / 65_536.0);
+            assert!((f64::from(got) - exact).abs() < 0.515, "{got}, not {exact}");
+        }
+        assert_eq!([0, 1 << 14, 1 << 15, 1 << 16].map(scaled_area), [0, 64, 128, 255]);
+        for level in SimdLevel::available() {
+            dispatch!(level, simd => {
+                for area in (0..=FULL).step_by(6) {
+                    // 2^17 of a sum are one pixel; and by the even-odd rule what two windings more are.
+                    let [sum, other] = [area, FULL - area].map(|v| i32x8::splat(simd, v));
+                    let expected = [area, FULL - area].map(|v| u16::from(scaled_area(v as u32 >> 1)));
+                    let lanes = |words: u16x16<_>| [words.to_array()[6], words.to_array()[7]];
+                    assert_eq!(lanes(non_zero(simd, sum, other)), expected, "{area} at {level:?}");
+                    assert_eq!(lanes(non_zero(simd, sum + 5 * FULL, other * -1)), [255, expected[1]], "{area} at {level:?}");
+                    let wound = even_odd(simd, sum + 6 * FULL, other - 4 * FULL);
+                    assert_eq!(lanes(wound), expected, "{area} at {level:?}");
+                }
+            });
         }
     }
 
