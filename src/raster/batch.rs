@@ -171,7 +171,7 @@ fn add_tall_inner<S: Simd>(
     strips: usize,
     reaches: &[Reach],
 ) {
-    let crossings = Crossings::new(simd, eight);
+    let crossings = Crossings::new(eight);
     let mut from = crossings.at(simd, eight, 0);
     for index in 0..strips {
         let strip_top = (index as i32) << STRIP_SHIFT;
@@ -206,7 +206,7 @@ struct Crossings {
 
 impl Crossings {
     #[inline(always)]
-    fn new<S: Simd>(_simd: S, eight: &Eight) -> Self {
+    fn new(eight: &Eight) -> Self {
         let (mut x, mut slope) = ([0.0; 8], [0.0; 8]);
         for lane in 0..8 {
             let line = FineLine::new(eight.start_x[lane], eight.end_x[lane], eight.height[lane]);

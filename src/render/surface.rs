@@ -160,6 +160,15 @@ pub(super) fn fill_line<S: Simd>(simd: S, line: &mut [u8], color: [u8; 4]) {
     }
 }
 
+/// Calls `f` with each value and what there is from its row's start on: without a product for each row.
+#[inline(always)]
+fn downwards<T>(mut bytes: &mut [u8], stride: usize, values: impl Iterator<Item = T>, mut f: impl FnMut(T, &mut [u8])) {
+    for value in values {
+        f(value, bytes);
+        bytes = bytes.get_mut(stride..).unwrap_or(&mut []);
+    }
+}
+
 /// Parts of a strip's rows.
 pub(super) struct Lines<'a> {
     bytes: &'a mut [u8],
@@ -173,13 +182,17 @@ impl Lines<'_> {
     /// Applies `f` to each value and its row's part, downwards.
     #[inline(always)]
     pub(super) fn with<T>(&mut self, values: &[T; BLOCK_HEIGHT], mut f: impl FnMut(&T, &mut [u8])) {
-        let mut rest = &mut *self.bytes;
-        for value in values.iter().take(self.count) {
-            if let Some(part) = rest.get_mut(..self.width) {
-                f(value, part);
-            }
-            rest = rest.get_mut(self.stride..).unwrap_or(&mut []);
-        }
+        downwards(
+            self.bytes,
+            self.stride,
+            values.iter().take(self.count),
+            #[inline(always)]
+            |value, rest| {
+                if let Some(part) = rest.get_mut(..self.width) {
+                    f(value, part);
+                }
+            },
+        );
     }
 
     /// The part of row `row` of the strip; nothing if there is no such row.
@@ -225,13 +238,17 @@ impl BlockRows<'_> {
     /// Applies `f` to each value and the pixels of its row, downwards.
     #[inline(always)]
     pub(super) fn with<T>(&mut self, values: &[T; BLOCK_HEIGHT], mut f: impl FnMut(&T, &mut [u8; ROW_BYTES])) {
-        let mut rest = &mut *self.bytes;
-        for value in values.iter().take(self.count) {
-            if let Some(pixels) = rest.first_chunk_mut::<ROW_BYTES>() {
-                f(value, pixels);
-            }
-            rest = rest.get_mut(self.stride..).unwrap_or(&mut []);
-        }
+        downwards(
+            self.bytes,
+            self.stride,
+            values.iter().take(self.count),
+            #[inline(always)]
+            |value, rest| {
+                if let Some(pixels) = rest.first_chunk_mut::<ROW_BYTES>() {
+                    f(value, pixels);
+                }
+            },
+        );
     }
 
     /// Applies `f` to the numbers and pixels of those of `rows` that exist.
