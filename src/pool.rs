@@ -23,24 +23,29 @@ pub(crate) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) +
     // One job at a time: a band that is slow must not hold back its neighbours. The caller starts at once, and is not
     // kept waiting by helpers that are still asleep.
     let queue = Mutex::new(jobs.into_iter());
-    let next = || queue.lock().ok()?.next();
-    let run = || {
-        while let Some(job) = next() {
+    // From both ends, so that from frame to frame most jobs fall to the core whose caches hold what they work on.
+    let next = |worker: usize| {
+        let mut queue = queue.lock().ok()?;
+        if worker.is_multiple_of(2) { queue.next() } else { queue.next_back() }
+    };
+    let run = |worker: usize| {
+        while let Some(job) = next(worker) {
             work(job);
         }
     };
     let call = CALLS.fetch_add(1, Ordering::Relaxed) + 1;
     let done = AtomicUsize::new(0);
+    let (run, done) = (&run, &done);
     pool.in_place_scope(|scope| {
-        for _ in 0..helpers {
-            scope.spawn(|_| {
-                run();
+        for worker in 1..=helpers {
+            scope.spawn(move |_| {
+                run(worker);
                 done.fetch_add(1, Ordering::Release);
                 // A frame calls twice in a row.
                 rayon::spawn(move || linger(|| CALLS.load(Ordering::Relaxed) != call));
             });
         }
-        run();
+        run(0);
         linger(|| done.load(Ordering::Acquire) == helpers);
     });
 }

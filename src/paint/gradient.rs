@@ -219,7 +219,7 @@ impl Gradient {
         let groups = out.as_flattened_mut().as_chunks_mut::<32>().0;
         // Positions first, then their colours: two loops, and one copy of the second for all geometries.
         let mut positions = [[0.0; 8]; 16];
-        let mut masks = [[u32::MAX; 8]; 16];
+        let mut masks = None;
         // A linear gradient that is the same along rows or columns needs 8 or 16 positions only.
         let mut count = 16;
         match self.geometry {
@@ -232,7 +232,8 @@ impl Gradient {
             }
             Geometry::TwoPoint(circles) => {
                 let points = self.points(simd, x, y);
-                for ((position, mask), point) in positions.iter_mut().zip(&mut masks).zip(&points) {
+                let masks = masks.insert([[0; 8]; 16]);
+                for ((position, mask), point) in positions.iter_mut().zip(masks).zip(&points) {
                     let (x, y) = point.load(simd);
                     let (t, on_circle) = circles.positions(simd, x, y);
                     *position = t.to_array();
@@ -263,8 +264,8 @@ impl Gradient {
             }
             _ => {}
         }
-        if self.geometry.has_holes() {
-            for (group, mask) in groups.iter_mut().zip(&masks) {
+        if let Some(masks) = &masks {
+            for (group, mask) in groups.iter_mut().zip(masks) {
                 let pixels = u32x8::from_bytes(u8x32::simd_from(simd, *group));
                 *group = (pixels & u32x8::simd_from(simd, *mask)).to_bytes().to_array();
             }

@@ -1,11 +1,11 @@
 //! The colours along a gradient: from a position to a premultiplied pixel.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8, u32x8};
+use fearless_simd::{f32x8, i32x8, mask32x8, u32x8};
 
 use super::shader::{GradientStop, SpreadMode};
 use crate::color::{Color, unit};
-use crate::num::lanes::{max_f32, min_f32, min_i32, truncate_f32};
+use crate::num::lanes::{lesser_f32, max_f32, min_f32, min_i32, truncate_f32};
 
 /// Eight neighbouring pixels of a row, as bytes.
 pub(super) type PixelGroup = [u8; 32];
@@ -158,27 +158,50 @@ impl Ramp {
             Repetition::Repeat => repeat(simd, positions),
             Repetition::Reflect => reflect(simd, positions),
         }
-        match (self.pieces.as_slice(), self.opaque) {
-            ([piece], true) => self.shade_one::<S, true>(simd, piece, positions, out),
-            ([piece], false) => self.shade_one::<S, false>(simd, piece, positions, out),
-            (_, true) => self.shade_many::<S, true>(simd, positions, out),
-            (_, false) => self.shade_many::<S, false>(simd, positions, out),
+        if self.opaque {
+            self.shade_with::<S, true>(simd, positions, out);
+        } else {
+            self.shade_with::<S, false>(simd, positions, out);
         }
     }
 
     #[inline(always)]
-    fn shade_one<S: Simd, const OPAQUE: bool>(
+    fn shade_with<S: Simd, const OPAQUE: bool>(&self, simd: S, positions: &[[f32; 8]], out: &mut [PixelGroup]) {
+        match (self.pieces.as_slice(), self.ends.as_slice()) {
+            ([first], _) => self.shade_few::<S, OPAQUE, 0>(simd, first, [], positions, out),
+            ([first, second], [end]) => {
+                self.shade_few::<S, OPAQUE, 1>(simd, first, [(*end, second)], positions, out);
+            }
+            ([first, second, third], [end, later]) => {
+                self.shade_few::<S, OPAQUE, 2>(simd, first, [(*end, second), (*later, third)], positions, out);
+            }
+            _ => self.shade_many::<S, OPAQUE>(simd, positions, out),
+        }
+    }
+
+    /// Of few pieces each lane chooses its own: `others` with where they begin.
+    #[inline(always)]
+    fn shade_few<S: Simd, const OPAQUE: bool, const OTHERS: usize>(
         &self,
         simd: S,
-        piece: &Piece,
+        first: &Piece,
+        others: [(f32, &Piece); OTHERS],
         positions: &[[f32; 8]],
         out: &mut [PixelGroup],
     ) {
         let (low, high) = (f32x8::splat(simd, self.low), f32x8::splat(simd, self.high));
-        let lanes = PieceLanes::splat(simd, piece);
+        let first = PieceLanes::splat(simd, first);
+        let mut later = [(high, first); OTHERS];
+        for (later, (start, piece)) in later.iter_mut().zip(others) {
+            *later = (f32x8::splat(simd, start), PieceLanes::splat(simd, piece));
+        }
         for (position, out) in positions.iter().zip(out) {
-            let t = min_f32(max_f32(f32x8::simd_from(simd, *position), low), high);
-            *out = lanes.pixels::<OPAQUE>(simd, t).to_bytes().to_array();
+            let t = lesser_f32(max_f32(f32x8::simd_from(simd, *position), low), high);
+            let mut piece = first;
+            for (start, other) in &later {
+                piece = piece.or::<OPAQUE>(t.simd_ge(*start), other);
+            }
+            *out = piece.pixels::<OPAQUE>(simd, t).to_bytes().to_array();
         }
     }
 
@@ -238,6 +261,7 @@ fn scaled(color: Color, opaque: bool) -> [f32; 4] {
 }
 
 /// A piece's coefficients in vectors.
+#[derive(Clone, Copy)]
 struct PieceLanes<S: Simd> {
     origin: f32x8<S>,
     color: [f32x8<S>; 4],
@@ -251,6 +275,19 @@ impl<S: Simd> PieceLanes<S> {
             [f32x8::splat(simd, v[0]), f32x8::splat(simd, v[1]), f32x8::splat(simd, v[2]), f32x8::splat(simd, v[3])]
         };
         Self { origin: f32x8::splat(simd, piece.origin), color: lanes(piece.color), slope: lanes(piece.slope) }
+    }
+
+    /// `other` in the lanes that `chosen` names.
+    #[inline(always)]
+    fn or<const OPAQUE: bool>(&self, chosen: mask32x8<S>, other: &Self) -> Self {
+        let pick = |a: f32x8<S>, b: f32x8<S>| chosen.select(b, a);
+        let mut piece = Self { origin: pick(self.origin, other.origin), ..*self };
+        // Alpha is the same in all opaque pieces.
+        for component in 0..if OPAQUE { 3 } else { 4 } {
+            piece.color[component] = pick(self.color[component], other.color[component]);
+            piece.slope[component] = pick(self.slope[component], other.slope[component]);
+        }
+        piece
     }
 
     /// The pixels at the clamped positions `t`.

@@ -38,6 +38,8 @@ const UNCACHED_PIXELS: u64 = 1 << 22;
 /// Working memory of one thread.
 #[derive(Debug, Default)]
 pub(super) struct BandScratch {
+    /// Who used it last.
+    pub(super) user: Option<std::thread::ThreadId>,
     pub(super) cells: Accumulator,
     pub(super) edges: Vec<Edge>,
     pub(super) exact: ExactScratch,

@@ -98,16 +98,26 @@ impl Renderer {
         let jobs: Vec<_> =
             target.bytes_mut().chunks_mut(stride * band_height as usize).enumerate().take(bands).collect();
         crate::pool::for_each(settings.threads, jobs, |(index, rows)| {
-            let mut own = scratch.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
+            let mut own = scratch.lock().ok().and_then(|mut all| take_own(&mut all)).unwrap_or_default();
             let offset = index as u32 * band_height;
             let count = band_height.min(area.height() - offset) as usize;
             let surface = surface::Surface::new(rows, stride, seen.0, area.width() as usize, count);
             let band = band::Frame::new(&drawing, first + index, area.top + offset as i32, count, seen);
             band::render(&band, surface, &mut own, settings.level);
+            own.user = Some(std::thread::current().id());
             if let Ok(mut all) = scratch.lock() {
                 all.push(own);
             }
         });
+    }
+}
+
+/// The working memory that this thread used last, which its core's cache may hold, or another.
+fn take_own(all: &mut Vec<band::BandScratch>) -> Option<band::BandScratch> {
+    let user = Some(std::thread::current().id());
+    match all.iter().rposition(|scratch| scratch.user == user) {
+        Some(own) => Some(all.swap_remove(own)),
+        None => all.pop(),
     }
 }
 
