@@ -9,8 +9,8 @@ use super::bins::Edges;
 use super::cell::Accumulator;
 use super::edge::{FineLine, FixedPoint};
 use super::kernel::{
-    FINE_SHIFT, PieceLine, Reach, RowParts, STRIP_SHIFT, Slant, add_downward, add_row_parts, add_strip_part, fine,
-    is_flat, two_columns,
+    FINE_SHIFT, PieceLine, Reach, RowParts, STRIP_SHIFT, Slant, add_downward, add_row_parts, add_strip_part, are_flat,
+    fine, is_flat, two_columns,
 };
 use crate::num::fixed;
 use crate::num::lanes::{greater_f32, lesser_f32, max_i32, min_i32};
@@ -48,7 +48,8 @@ pub(crate) fn add_edges<S: Simd>(
                     others |= 1 << lane;
                 }
             }
-            if is_worth_a_batch(others & eight.tall) {
+            let tall = others & eight.tall;
+            if tall & tall.wrapping_sub(1) != 0 {
                 add_tall(simd, cells, &eight, others, top, strips, reaches);
                 return;
             }
@@ -172,8 +173,9 @@ fn add_tall_inner<S: Simd>(
     reaches: &[Reach],
 ) {
     let crossings = Crossings::new(eight);
-    let mut from = crossings.at(simd, eight, 0);
-    for index in 0..strips {
+    let (first, end) = eight.strips(edges, strips);
+    let mut from = crossings.at(simd, eight, (first as i32) << STRIP_SHIFT);
+    for index in first..end {
         let strip_top = (index as i32) << STRIP_SHIFT;
         let to = crossings.at(simd, eight, strip_top + (1 << STRIP_SHIFT));
         let pieces = Pieces::new(simd, eight, &from, &to, strip_top);
@@ -184,7 +186,7 @@ fn add_tall_inner<S: Simd>(
             let (first, last) = (pieces.first[lane] as usize, pieces.last[lane] as usize);
             let height = pieces.height[lane];
             let seen = reaches.get(index).is_none_or(|reach| reach.holds_columns(first, last));
-            if is_flat(first, last, height) || !seen {
+            if pieces.flat >> lane & 1 != 0 || !seen {
                 let y = top + strip_top + pieces.below[lane];
                 let (start, end) = ((from[lane], y), (to[lane], y + height));
                 add_strip_part::<S, false>(simd, cells, index, start, end, eight.slant(lane), top, reaches);
@@ -233,8 +235,9 @@ impl Crossings {
 
 /// The pieces of eight edges in one strip, a lane for each, as a [`PieceLine`] has them.
 struct Pieces {
-    /// Which of them there are, as bits.
+    /// Which of them there are, as bits, and which should be walked row by row.
     climbs: u32,
+    flat: u32,
     below: [i32; 8],
     height: [i32; 8],
     start: [f32; 8],
@@ -255,6 +258,7 @@ impl Pieces {
         let start = (from - (first << FINE_SHIFT)).to_float::<f32x8<S>>() * f32x8::splat(simd, fine(1));
         Self {
             climbs: height.simd_gt(0).to_bitmask() as u32,
+            flat: are_flat(first, last, height),
             below: below.to_array(),
             height: height.to_array(),
             start: start.to_array(),
@@ -362,6 +366,21 @@ impl Eight {
             least: least.to_array(),
             greatest: greatest.to_array(),
         }
+    }
+
+    /// The strips that some of `edges` cross: a range within `0..strips`.
+    #[inline(always)]
+    fn strips(&self, edges: u32, strips: usize) -> (usize, usize) {
+        let (mut first, mut last) = (i32::MAX, i32::MIN);
+        let mut left = edges;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize & 7;
+            left &= left - 1;
+            first = first.min(self.start_y[lane]);
+            last = last.max(self.start_y[lane] + self.height[lane] - 1);
+        }
+        let strip_of = |y: i32| (y.max(0) as usize) >> STRIP_SHIFT;
+        (strip_of(first), (strip_of(last) + 1).min(strips))
     }
 
     /// Where one of those lies that keep to one strip.

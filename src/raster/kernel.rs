@@ -28,7 +28,7 @@ use crate::surface::block::BLOCK_HEIGHT;
 
 /// An edge that runs over more columns than this in a row is walked row by row: eight lanes would
 /// mostly idle.
-const FLAT_COLUMNS_PER_ROW: i64 = 10;
+const FLAT_COLUMNS_PER_ROW: i32 = 10;
 
 /// Fraction bits of x where an edge enters and leaves a strip.
 pub(super) const FINE_SHIFT: u32 = FineLine::SHIFT;
@@ -256,7 +256,15 @@ pub(super) struct PieceLine {
 /// Whether a piece between two columns that goes down by `height` should be walked row by row.
 #[inline(always)]
 pub(super) fn is_flat(first: usize, last: usize, height: i32) -> bool {
-    last > first + 4 && (last - first) as i64 * 256 > FLAT_COLUMNS_PER_ROW * i64::from(height)
+    last > first + 4 && (last - first) as i64 * 256 > i64::from(FLAT_COLUMNS_PER_ROW) * i64::from(height)
+}
+
+/// Which of eight pieces are, as bits.
+#[inline(always)]
+pub(super) fn are_flat<S: Simd>(first: i32x8<S>, last: i32x8<S>, height: i32x8<S>) -> u32 {
+    let columns = last - first;
+    let many = (columns << fixed::SHIFT).simd_gt(height * FLAT_COLUMNS_PER_ROW);
+    (columns.simd_gt(4) & many).to_bitmask() as u32
 }
 
 /// The parts of an edge in the eight rows of a strip; x in 1/256 pixel from the first column's left side.

@@ -318,7 +318,29 @@ impl Painter<'_, '_, '_> {
         color: [u8; 4],
         replaces: bool,
     ) {
-        self.rows.lines(start, end).with(
+        let mut lines = self.rows.lines(start, end);
+        // Nearly always all rows are covered whole.
+        if *rows == [u8::MAX; BLOCK_HEIGHT] {
+            if replaces {
+                lines.each(
+                    #[inline(always)]
+                    |line| fill_line(simd, line, color),
+                );
+            } else {
+                lines.each(
+                    #[inline(always)]
+                    |line| {
+                        let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
+                        for pixels in blocks {
+                            over_solid_full(simd, pixels, color);
+                        }
+                        over_cut_row(simd, tail, color, u8::MAX);
+                    },
+                );
+            }
+            return;
+        }
+        lines.with(
             rows,
             #[inline(always)]
             |&coverage, line| {
@@ -329,18 +351,10 @@ impl Painter<'_, '_, '_> {
                     return fill_line(simd, line, color);
                 }
                 let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
-                if coverage == 255 {
-                    for pixels in blocks {
-                        over_solid_full(simd, pixels, color);
-                    }
-                } else {
-                    for pixels in blocks {
-                        over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
-                    }
+                for pixels in blocks {
+                    over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
                 }
-                if !tail.is_empty() {
-                    over_cut_row(simd, tail, color, coverage);
-                }
+                over_cut_row(simd, tail, color, coverage);
             },
         );
     }
@@ -499,12 +513,26 @@ impl Painter<'_, '_, '_> {
 /// Source-over of one colour on a part of a block's row, by the same coverage throughout.
 #[inline(always)]
 fn over_cut_row<S: Simd>(simd: S, part: &mut [u8], color: [u8; 4], coverage: u8) {
-    let mut pixels = [0; ROW_BYTES];
-    for (copy, byte) in pixels.iter_mut().zip(part.iter()) {
-        *copy = *byte;
+    if !part.is_empty() {
+        over_cut_row_of_some(simd, part, color, coverage);
     }
-    over_solid_row(simd, &mut pixels, color, &[coverage; BLOCK_WIDTH]);
-    for (byte, copy) in part.iter_mut().zip(pixels) {
-        *byte = copy;
-    }
+}
+
+/// Out of the way of the loops that go along whole blocks.
+#[cold]
+#[inline(never)]
+fn over_cut_row_of_some<S: Simd>(simd: S, part: &mut [u8], color: [u8; 4], coverage: u8) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut pixels = [0; ROW_BYTES];
+            for (copy, byte) in pixels.iter_mut().zip(part.iter()) {
+                *copy = *byte;
+            }
+            over_solid_row(simd, &mut pixels, color, &[coverage; BLOCK_WIDTH]);
+            for (byte, copy) in part.iter_mut().zip(pixels) {
+                *byte = copy;
+            }
+        },
+    );
 }

@@ -155,6 +155,15 @@ pub(super) fn fill_line<S: Simd>(simd: S, line: &mut [u8], color: [u8; 4]) {
     for pixels in blocks {
         eight.store_array(pixels);
     }
+    if !tail.is_empty() {
+        fill_tail(tail, color);
+    }
+}
+
+/// Out of the way of the loop above, as only rows that end inside a block come here.
+#[cold]
+#[inline(never)]
+fn fill_tail(tail: &mut [u8], color: [u8; 4]) {
     for pixel in tail.as_chunks_mut::<4>().0 {
         *pixel = color;
     }
@@ -179,6 +188,22 @@ pub(super) struct Lines<'a> {
 }
 
 impl Lines<'_> {
+    /// Applies `f` to each row's part, downwards.
+    #[inline(always)]
+    pub(super) fn each(&mut self, mut f: impl FnMut(&mut [u8])) {
+        downwards(
+            self.bytes,
+            self.stride,
+            0..self.count,
+            #[inline(always)]
+            |_, rest| {
+                if let Some(part) = rest.get_mut(..self.width) {
+                    f(part);
+                }
+            },
+        );
+    }
+
     /// Applies `f` to each value and its row's part, downwards.
     #[inline(always)]
     pub(super) fn with<T>(&mut self, values: &[T; BLOCK_HEIGHT], mut f: impl FnMut(&T, &mut [u8])) {
