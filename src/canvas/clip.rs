@@ -150,10 +150,8 @@ impl Canvas<'_> {
             let Some(node) = old.clip(ClipId(*id)) else { continue };
             let mut node = node.clone();
             node.parent = renamed(node.parent);
-            if let ClipKind::Geometry { geometry: Geometry::Fill { verbs, points, transform, .. }, .. } = &mut node.kind
-            {
-                let (old_verbs, old_points) = old.outline(*verbs, *points);
-                (*verbs, *points) = self.list.add_outline(old_verbs, old_points);
+            if let ClipKind::Geometry { geometry: Geometry::Fill { outline, transform, .. }, .. } = &mut node.kind {
+                *outline = self.list.add_outline_of(old, *outline);
                 *transform = self.list.add_transform(old.transform(*transform));
             }
             self.list.commands.push(Command::Clip(ClipId(self.list.clips.len() as u32)));

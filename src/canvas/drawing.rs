@@ -284,9 +284,9 @@ impl Canvas<'_> {
             return self.record_device_rect(rect);
         }
         let bounds = self.device_bounds(path, 0.0)?;
-        let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
+        let outline = self.list.add_path(path);
         let transform = self.list.add_transform(transform);
-        Some((Geometry::Fill { verbs, points, transform, rule }, bounds))
+        Some((Geometry::Fill { outline, transform, rule }, bounds))
     }
 
     /// As [`record_fill`](Self::record_fill) of a rectangle.
@@ -338,11 +338,11 @@ impl Canvas<'_> {
         // A hairline's width is in device pixels.
         let reach = if stroke.width == 0.0 { reach } else { stroke.width * reach };
         let bounds = self.device_bounds(path, reach)?;
-        let (verbs, points) = self.list.add_outline(path.verbs(), path.points());
+        let outline = self.list.add_path(path);
         let transform = self.list.add_transform(transform);
         let style = self.list.strokes.len() as u32;
         self.list.strokes.push(stroke.clone());
-        Some((Geometry::Stroke { verbs, points, transform, style }, bounds))
+        Some((Geometry::Stroke { outline, transform, style }, bounds))
     }
 
     /// The device pixels that a path can touch when it is drawn with a pen that reaches so far in user space;

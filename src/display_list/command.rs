@@ -7,7 +7,7 @@ use crate::color::Color;
 use crate::filter::PlacedFilter;
 use crate::geom::{FixedRect, IntRect, Point, Transform};
 use crate::paint::PreparedPaint;
-use crate::path::{Stroke, Verb};
+use crate::path::{Outline, Path, Stroke, Verb};
 use crate::style::{Antialias, FillRule};
 use crate::surface::{Mask, MaskKind};
 
@@ -19,21 +19,27 @@ pub(crate) struct Span {
     pub(crate) end: i32,
 }
 
+/// Where a recording has an outline.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum OutlineRef {
+    /// A range of [`DisplayList::verbs`] and one of [`DisplayList::points`].
+    Copied { verbs: (u32, u32), points: (u32, u32) },
+    /// Indexes [`DisplayList::outlines`].
+    Shared(u32),
+}
+
 /// What a draw covers.
 #[derive(Clone, Debug)]
 pub(crate) enum Geometry {
     /// The inside of an outline.
     Fill {
-        /// Where the outline lies in [`DisplayList::verbs`].
-        verbs: (u32, u32),
-        /// Where it lies in [`DisplayList::points`].
-        points: (u32, u32),
+        outline: OutlineRef,
         /// From its space to device pixels: indexes [`DisplayList::transforms`].
         transform: u32,
         rule: FillRule,
     },
     /// The stroke of an outline; `style` indexes [`DisplayList::strokes`].
-    Stroke { verbs: (u32, u32), points: (u32, u32), transform: u32, style: u32 },
+    Stroke { outline: OutlineRef, transform: u32, style: u32 },
     /// An axis-aligned rectangle in device space.
     Rect(FixedRect),
     /// Whole pixels: a range of [`DisplayList::spans`].
@@ -156,6 +162,10 @@ pub(crate) struct DisplayList {
     pub(crate) commands: Vec<Command>,
     pub(crate) verbs: Vec<Verb>,
     pub(crate) points: Vec<Point>,
+    /// Outlines of paths that are drawn again and again. From `shared` on they are the last recording's: most likely this one
+    /// names the same, which then is seen without touching them.
+    outlines: Vec<Arc<Outline>>,
+    shared: usize,
     pub(crate) spans: Vec<Span>,
     pub(crate) strokes: Vec<Stroke>,
     pub(crate) transforms: Vec<Transform>,
@@ -169,6 +179,8 @@ impl DisplayList {
         self.commands.clear();
         self.verbs.clear();
         self.points.clear();
+        self.outlines.truncate(self.shared);
+        self.shared = 0;
         self.spans.clear();
         self.strokes.clear();
         self.transforms.clear();
@@ -176,16 +188,48 @@ impl DisplayList {
         self.clips.clear();
     }
 
-    /// Stores an outline; the ranges name its verbs and points. Beyond 2^32 of either, an empty one.
-    pub(crate) fn add_outline(&mut self, verbs: &[Verb], points: &[Point]) -> ((u32, u32), (u32, u32)) {
+    /// Stores the outline of a path, or shares it.
+    pub(crate) fn add_path(&mut self, path: &Path) -> OutlineRef {
+        match path.shared_outline() {
+            Some(outline) => self.share_outline(outline),
+            None => self.copy_outline(path.verbs(), path.points()),
+        }
+    }
+
+    /// Stores an outline that another recording has.
+    pub(crate) fn add_outline_of(&mut self, other: &Self, outline: OutlineRef) -> OutlineRef {
+        match outline {
+            OutlineRef::Shared(index) if let Some(outline) = other.outlines.get(index as usize) => {
+                self.share_outline(outline)
+            }
+            _ => {
+                let (verbs, points) = other.outline(outline);
+                self.copy_outline(verbs, points)
+            }
+        }
+    }
+
+    fn share_outline(&mut self, outline: &Arc<Outline>) -> OutlineRef {
+        let index = self.shared;
+        match self.outlines.get_mut(index) {
+            Some(last) if Arc::ptr_eq(last, outline) => {}
+            Some(last) => *last = Arc::clone(outline),
+            None => self.outlines.push(Arc::clone(outline)),
+        }
+        self.shared += 1;
+        OutlineRef::Shared(index as u32)
+    }
+
+    /// Beyond 2^32 verbs or points, an empty outline.
+    fn copy_outline(&mut self, verbs: &[Verb], points: &[Point]) -> OutlineRef {
         let ends = (self.verbs.len() + verbs.len(), self.points.len() + points.len());
         if u32::try_from(ends.0).is_err() || u32::try_from(ends.1).is_err() {
-            return ((0, 0), (0, 0));
+            return OutlineRef::Copied { verbs: (0, 0), points: (0, 0) };
         }
-        let ranges = ((self.verbs.len() as u32, ends.0 as u32), (self.points.len() as u32, ends.1 as u32));
+        let starts = (self.verbs.len() as u32, self.points.len() as u32);
         self.verbs.extend_from_slice(verbs);
         self.points.extend_from_slice(points);
-        ranges
+        OutlineRef::Copied { verbs: (starts.0, ends.0 as u32), points: (starts.1, ends.1 as u32) }
     }
 
     /// Stores a transform. Shapes in a row mostly share theirs, so that commands only name it.
@@ -207,11 +251,16 @@ impl DisplayList {
     }
 
     /// The verbs and points of an outline.
-    pub(crate) fn outline(&self, verbs: (u32, u32), points: (u32, u32)) -> (&[Verb], &[Point]) {
-        (
-            self.verbs.get(verbs.0 as usize..verbs.1 as usize).unwrap_or(&[]),
-            self.points.get(points.0 as usize..points.1 as usize).unwrap_or(&[]),
-        )
+    pub(crate) fn outline(&self, outline: OutlineRef) -> (&[Verb], &[Point]) {
+        match outline {
+            OutlineRef::Copied { verbs, points } => (
+                self.verbs.get(verbs.0 as usize..verbs.1 as usize).unwrap_or(&[]),
+                self.points.get(points.0 as usize..points.1 as usize).unwrap_or(&[]),
+            ),
+            OutlineRef::Shared(index) => {
+                self.outlines.get(index as usize).map_or((&[], &[]), |outline| outline.parts())
+            }
+        }
     }
 }
 

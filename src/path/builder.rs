@@ -1,7 +1,8 @@
 //! The path and its elementary segments.
 
-use std::sync::OnceLock;
+use std::sync::Arc;
 
+use super::kept::{Kept, Outline};
 use crate::geom::{Point, Rect, Transform};
 
 /// What a path does next.
@@ -39,7 +40,8 @@ pub enum Segment {
 ///
 /// Methods that add segments return the path, so that they chain. A segment without a
 /// [`move_to`](Path::move_to) before it starts where the last subpath started, or, in an empty path, at its own
-/// first point, as on an HTML canvas. Non-finite points are kept here and end the drawing of the
+/// first point, as on an HTML canvas. From the second drawing on a path that does not change keeps a copy of its segments, which
+/// recordings then share instead of copying them anew. Non-finite points are kept here and end the drawing of the
 /// whole path: a path with such a point draws nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path {
@@ -47,18 +49,7 @@ pub struct Path {
     points: Vec<Point>,
     /// Where the current subpath started.
     start: Point,
-    bounds: KeptBounds,
-}
-
-/// The bounds of a path's points, once somebody asked: a path is often drawn more than once. It says nothing new
-/// of the path, and so does not count when paths are compared.
-#[derive(Clone, Debug, Default)]
-struct KeptBounds(OnceLock<Option<Rect>>);
-
-impl PartialEq for KeptBounds {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
+    kept: Kept,
 }
 
 impl Path {
@@ -77,7 +68,7 @@ impl Path {
         self.verbs.clear();
         self.points.clear();
         self.start = Point::ZERO;
-        self.bounds = KeptBounds::default();
+        self.kept.forget();
     }
 
     /// The verbs in order; each takes 1, 1, 2, 3 or 0 of [`Path::points`].
@@ -94,7 +85,7 @@ impl Path {
     pub fn move_to(&mut self, p: impl Into<Point>) -> &mut Self {
         let p = p.into();
         self.start = p;
-        self.bounds.0.take();
+        self.kept.forget();
         if let (Some(Verb::MoveTo), Some(last)) = (self.verbs.last(), self.points.last_mut()) {
             *last = p;
         } else {
@@ -108,7 +99,7 @@ impl Path {
     pub fn line_to(&mut self, p: impl Into<Point>) -> &mut Self {
         let p = p.into();
         self.ensure_subpath(p);
-        self.bounds.0.take();
+        self.kept.forget();
         self.verbs.push(Verb::LineTo);
         self.points.push(p);
         self
@@ -118,7 +109,7 @@ impl Path {
     pub fn quad_to(&mut self, c: impl Into<Point>, p: impl Into<Point>) -> &mut Self {
         let (c, p) = (c.into(), p.into());
         self.ensure_subpath(c);
-        self.bounds.0.take();
+        self.kept.forget();
         self.verbs.push(Verb::QuadTo);
         self.points.extend([c, p]);
         self
@@ -128,7 +119,7 @@ impl Path {
     pub fn cubic_to(&mut self, c1: impl Into<Point>, c2: impl Into<Point>, p: impl Into<Point>) -> &mut Self {
         let (c1, c2, p) = (c1.into(), c2.into(), p.into());
         self.ensure_subpath(c1);
-        self.bounds.0.take();
+        self.kept.forget();
         self.verbs.push(Verb::CubicTo);
         self.points.extend([c1, c2, p]);
         self
@@ -153,7 +144,7 @@ impl Path {
 
     /// Appends all segments of `other`, mapped by `transform`.
     pub fn extend(&mut self, other: &Path, transform: Transform) -> &mut Self {
-        self.bounds.0.take();
+        self.kept.forget();
         self.verbs.extend_from_slice(&other.verbs);
         self.points.extend(other.points.iter().map(|p| transform.map(*p)));
         if !other.is_empty() {
@@ -173,7 +164,12 @@ impl Path {
     /// The bounding box of all points, control points included; `None` for an empty path or one with
     /// a non-finite point.
     pub fn control_bounds(&self) -> Option<Rect> {
-        *self.bounds.0.get_or_init(|| Rect::from_points(&self.points))
+        self.kept.bounds(&self.points)
+    }
+
+    /// What a recording may share instead of copying the segments; `None` if they are few or drawn for the first time.
+    pub(crate) fn shared_outline(&self) -> Option<&Arc<Outline>> {
+        self.kept.outline(&self.verbs, &self.points)
     }
 
     /// The rectangle that filling the path covers, if the path is one rectangle with edges along the axes.
@@ -342,5 +338,27 @@ mod tests {
             assert_eq!(path.control_bounds(), Rect::from_points(path.points()));
             assert_eq!(path.clone().control_bounds(), path.control_bounds());
         }
+    }
+
+    #[test]
+    fn a_shared_outline_is_that_of_the_path_as_it_is() {
+        let mut path = Path::new();
+        path.ellipse((5.0, 5.0), 3.0, 4.0);
+        for end in [None, Some(Point::new(1.0, 1.0)), Some(Point::new(20.0, 9.0))] {
+            if let Some(end) = end {
+                path.line_to(end);
+            }
+            while path.points().len() < 16 {
+                path.line_to((7.0, 8.0));
+            }
+            assert!(path.shared_outline().is_none(), "drawn once");
+            for drawn in [&path, &path.clone(), &path] {
+                let parts = drawn.shared_outline().map(|outline| outline.parts());
+                assert_eq!(parts, Some((path.verbs(), path.points())));
+            }
+        }
+        path.clear();
+        path.move_to((0.0, 0.0)).line_to((5.0, 1.0)).line_to((5.0, 5.0));
+        assert!((0..3).all(|_| path.shared_outline().is_none()), "short ones are copied");
     }
 }

@@ -6,6 +6,7 @@ mod dash;
 mod far;
 pub(crate) mod flatten;
 mod hit;
+mod kept;
 mod measure;
 mod outline;
 pub(crate) mod polygons;
@@ -16,5 +17,6 @@ mod stroke_style;
 mod svg_data;
 
 pub use builder::{Path, Segment, Verb};
+pub(crate) use kept::Outline;
 pub use shapes::Radii;
 pub use stroke_style::{Dash, LineCap, LineJoin, Stroke};

@@ -121,8 +121,8 @@ impl Chunk {
         }
         self.polygons.clear();
         match geometry {
-            Geometry::Fill { verbs, points, transform, .. } => {
-                let (verbs, points) = list.outline(*verbs, *points);
+            Geometry::Fill { outline, transform, .. } => {
+                let (verbs, points) = list.outline(*outline);
                 let transform = list.transform(*transform);
                 let points = if transform.is_identity() {
                     points
@@ -133,8 +133,8 @@ impl Chunk {
                 };
                 flatten_fill(simd, verbs, points, &mut self.polygons);
             }
-            Geometry::Stroke { verbs, points, transform, style } => {
-                let (verbs, points) = list.outline(*verbs, *points);
+            Geometry::Stroke { outline, transform, style } => {
+                let (verbs, points) = list.outline(*outline);
                 if let Some(style) = list.strokes.get(*style as usize) {
                     let visible = bounds.to_rect();
                     let transform = list.transform(*transform);
