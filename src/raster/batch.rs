@@ -6,7 +6,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
 use super::bins::Edges;
-use super::cell::Accumulator;
+use super::cell::{Accumulator, Column, Strip};
 use super::edge::{FineLine, FixedPoint};
 use super::kernel::{
     FINE_SHIFT, PieceLine, Reach, RowParts, STRIP_SHIFT, Slant, add_downward, add_row_parts, add_strip_part, are_flat,
@@ -80,6 +80,19 @@ fn add_small<S: Simd>(
     reaches: &[Reach],
 ) -> u32 {
     let areas = SmallAreas::new(simd, eight);
+    // Mostly they are neighbours: what strip and columns have to be asked is then asked once for all of them.
+    if let Some(near) = Near::new(simd, eight, small) {
+        match near.place(strips, reaches) {
+            Place::Seen(strip, first, last) => {
+                if let Some(strip) = cells.strip(strip) {
+                    areas.add(simd, strip, eight, small, first, last);
+                }
+                return 0;
+            }
+            Place::Unseen => return 0,
+            Place::PartlySeen => {}
+        }
+    }
     let mut others = 0;
     let mut left = small;
     while left != 0 {
@@ -99,14 +112,45 @@ fn add_small<S: Simd>(
         let Some(columns) = strip.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) else {
             continue;
         };
-        // Where there is no lower row, zeros are added: a branch would be wrong half of the time.
         let below = (row + 1) & (BLOCK_HEIGHT - 1);
-        for (column, [upper, lower]) in columns.iter_mut().zip(&areas.columns) {
-            column.0[row] = column.0[row].wrapping_add(upper[lane]);
-            column.0[below] = column.0[below].wrapping_add(lower[lane]);
-        }
+        areas.add_lane(columns, lane, row, below);
     }
     others
+}
+
+/// Edges of one strip that are near each other.
+struct Near {
+    strip: i32,
+    /// The least and the greatest x.
+    least: i32,
+    greatest: i32,
+}
+
+impl Near {
+    /// They lie less far apart: blocks between them are taken to hold values.
+    const FARTHEST: i32 = 48 << fixed::SHIFT;
+
+    /// `edges`, of which there is one at least, if they are.
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, eight: &Eight, edges: u32) -> Option<Self> {
+        let strip = eight.start_y[edges.trailing_zeros() as usize & 7] >> STRIP_SHIFT;
+        let strips = i32x8::load_array_ref(simd, &eight.start_y) >> STRIP_SHIFT;
+        let here = strips.simd_eq(strip).to_bitmask() as u32;
+        let bits = i32x8::simd_from(simd, [1, 2, 4, 8, 16, 32, 64, 128]);
+        let chosen = (i32x8::splat(simd, edges as i32) & bits).simd_gt(0);
+        let least = chosen.select(i32x8::load_array_ref(simd, &eight.least), i32x8::splat(simd, i32::MAX));
+        let greatest = chosen.select(i32x8::load_array_ref(simd, &eight.greatest), i32x8::splat(simd, i32::MIN));
+        let [a, b, c, d, e, f, g, h] = least.to_array();
+        let least = a.min(b).min(c.min(d)).min(e.min(f).min(g.min(h)));
+        let [a, b, c, d, e, f, g, h] = greatest.to_array();
+        let greatest = a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)));
+        (here & edges == edges && greatest - least < Self::FARTHEST).then_some(Self { strip, least, greatest })
+    }
+
+    #[inline(always)]
+    fn place(&self, strips: usize, reaches: &[Reach]) -> Place {
+        Place::of(self.strip, self.least, self.greatest, strips, reaches)
+    }
 }
 
 /// What eight edges of at most two rows and two columns add, a lane for each of them: to the cells of the first column, of the
@@ -130,6 +174,35 @@ impl SmallAreas {
         let lower_row = Self::row(simd, eight, middle, end, height - upper);
         let ([a, b, c], [d, e, f]) = (upper_row, lower_row);
         Self { columns: [[a, d], [b, e], [c, f]] }
+    }
+
+    /// Adds all of `edges`, which lie in columns `first ..= last` of a strip.
+    #[inline(always)]
+    fn add<S: Simd>(&self, simd: S, strip: &mut Strip, eight: &Eight, edges: u32, first: usize, last: usize) {
+        strip.occupy(first, last + 1);
+        let Some(window) = strip.columns.get_mut(first..last + 3) else { return };
+        let column = (i32x8::load_array_ref(simd, &eight.least) >> fixed::SHIFT) - first as i32;
+        let row = (i32x8::load_array_ref(simd, &eight.start_y) >> fixed::SHIFT) & (BLOCK_HEIGHT as i32 - 1);
+        let (column, row) = (column.to_array(), row.to_array());
+        let mut left = edges;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize & 7;
+            left &= left - 1;
+            let columns = window.get_mut(column[lane] as usize..).and_then(|rest| rest.first_chunk_mut::<3>());
+            let row = row[lane] as usize & (BLOCK_HEIGHT - 1);
+            if let Some(columns) = columns {
+                self.add_lane(columns, lane, row, (row + 1) & (BLOCK_HEIGHT - 1));
+            }
+        }
+    }
+
+    /// Adds an edge in a row and the one below. Where there is no lower row, zeros are added: a branch would be wrong half of the time.
+    #[inline(always)]
+    fn add_lane(&self, columns: &mut [Column; 3], lane: usize, row: usize, below: usize) {
+        for (column, [upper, lower]) in columns.iter_mut().zip(&self.columns) {
+            column.0[row] = column.0[row].wrapping_add(upper[lane]);
+            column.0[below] = column.0[below].wrapping_add(lower[lane]);
+        }
     }
 
     /// What parts add that go from `from` to `to`, so far down.
@@ -308,6 +381,27 @@ enum Place {
     Seen(usize, usize, usize),
 }
 
+impl Place {
+    /// That of what lies in a strip, between two x.
+    #[inline(always)]
+    fn of(strip: i32, least: i32, greatest: i32, strips: usize, reaches: &[Reach]) -> Self {
+        // Above the band the strip is negative, which no index is.
+        let strip = strip as usize;
+        if strip >= strips {
+            return Self::Unseen;
+        }
+        if let Some(reach) = reaches.get(strip) {
+            if reach.ends_before(least) {
+                return Self::Unseen;
+            }
+            if !reach.holds(least, greatest) {
+                return Self::PartlySeen;
+            }
+        }
+        Self::Seen(strip, (least >> fixed::SHIFT) as usize, (greatest >> fixed::SHIFT) as usize)
+    }
+}
+
 /// What there is to know of eight edges: each array has a lane for each.
 struct Eight {
     /// Which of them are not horizontal, as bits, and which of these lie within one strip.
@@ -386,21 +480,8 @@ impl Eight {
     /// Where one of those lies that keep to one strip.
     #[inline(always)]
     fn place(&self, lane: usize, strips: usize, reaches: &[Reach]) -> Place {
-        // Of edges above the band the strip is negative, which no index is.
-        let strip = (self.start_y[lane] >> STRIP_SHIFT) as usize;
-        if strip >= strips {
-            return Place::Unseen;
-        }
-        let (least, greatest) = (self.least[lane], self.greatest[lane]);
-        if let Some(reach) = reaches.get(strip) {
-            if reach.ends_before(least) {
-                return Place::Unseen;
-            }
-            if !reach.holds(least, greatest) {
-                return Place::PartlySeen;
-            }
-        }
-        Place::Seen(strip, (least >> fixed::SHIFT) as usize, (greatest >> fixed::SHIFT) as usize)
+        let strip = self.start_y[lane] >> STRIP_SHIFT;
+        Place::of(strip, self.least[lane], self.greatest[lane], strips, reaches)
     }
 
     #[inline(always)]
