@@ -334,3 +334,52 @@ fn reflect<S: Simd>(simd: S, positions: &mut [[f32; 8]]) {
         *position = u.simd_gt(1.0).select(f32x8::splat(simd, 2.0) - u, u).to_array();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+
+    #[test]
+    fn lanes_that_choose_among_few_pieces_find_what_the_search_finds() {
+        let mut seed = 3_u32;
+        let mut random = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 24) as f32
+        };
+        let mut counts = [0; 4];
+        for case in 0..300 {
+            let opaque = case % 2 == 0;
+            // Coincident ones, too: then the colour jumps.
+            let mut position = 0.0;
+            let stops: Vec<GradientStop> = (0..2 + case % 4)
+                .map(|_| {
+                    position = if random() < 0.3 { position } else { position + random() * 0.5 };
+                    let alpha = if opaque { 1.0 } else { random() };
+                    GradientStop::new(position, Color::from_rgba(random(), random(), random(), alpha))
+                })
+                .collect();
+            let spread = [SpreadMode::Pad, SpreadMode::Repeat, SpreadMode::Reflect, SpreadMode::Decal][case / 4 % 4];
+            let Colors::Ramp(ramp) = Colors::new(&stops, spread, 1.0, false) else { continue };
+            counts[ramp.pieces.len().min(4) - 1] += 1;
+            let mut positions = [[0.0; 8]; 6];
+            positions.as_flattened_mut().fill_with(|| random() * 1.5 - 0.25);
+            positions[0] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.0, 0.0, 1.0, 1e30, -1e30];
+            for (lane, stop) in positions[1].iter_mut().zip(&stops) {
+                *lane = stop.position;
+            }
+            for level in SimdLevel::available() {
+                let (mut few, mut many) = ([[0; 32]; 6], [[0; 32]; 6]);
+                dispatch!(level, simd => if ramp.opaque {
+                    ramp.shade_with::<_, true>(simd, &positions, &mut few);
+                    ramp.shade_many::<_, true>(simd, &positions, &mut many);
+                } else {
+                    ramp.shade_with::<_, false>(simd, &positions, &mut few);
+                    ramp.shade_many::<_, false>(simd, &positions, &mut many);
+                });
+                assert_eq!(few, many, "{stops:?} {spread:?} at {level:?}");
+            }
+        }
+        assert!(counts.iter().all(|count| *count > 10), "{counts:?}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::kept::{Kept, Outline};
+use super::known::{Known, Outline};
 use crate::geom::{Point, Rect, Transform};
 
 /// What a path does next.
@@ -49,7 +49,7 @@ pub struct Path {
     points: Vec<Point>,
     /// Where the current subpath started.
     start: Point,
-    kept: Kept,
+    known: Known,
 }
 
 impl Path {
@@ -68,7 +68,7 @@ impl Path {
         self.verbs.clear();
         self.points.clear();
         self.start = Point::ZERO;
-        self.kept.forget();
+        self.known.forget();
     }
 
     /// The verbs in order; each takes 1, 1, 2, 3 or 0 of [`Path::points`].
@@ -85,7 +85,7 @@ impl Path {
     pub fn move_to(&mut self, p: impl Into<Point>) -> &mut Self {
         let p = p.into();
         self.start = p;
-        self.kept.forget();
+        self.known.forget();
         if let (Some(Verb::MoveTo), Some(last)) = (self.verbs.last(), self.points.last_mut()) {
             *last = p;
         } else {
@@ -99,7 +99,7 @@ impl Path {
     pub fn line_to(&mut self, p: impl Into<Point>) -> &mut Self {
         let p = p.into();
         self.ensure_subpath(p);
-        self.kept.forget();
+        self.known.forget();
         self.verbs.push(Verb::LineTo);
         self.points.push(p);
         self
@@ -109,7 +109,7 @@ impl Path {
     pub fn quad_to(&mut self, c: impl Into<Point>, p: impl Into<Point>) -> &mut Self {
         let (c, p) = (c.into(), p.into());
         self.ensure_subpath(c);
-        self.kept.forget();
+        self.known.forget();
         self.verbs.push(Verb::QuadTo);
         self.points.extend([c, p]);
         self
@@ -119,7 +119,7 @@ impl Path {
     pub fn cubic_to(&mut self, c1: impl Into<Point>, c2: impl Into<Point>, p: impl Into<Point>) -> &mut Self {
         let (c1, c2, p) = (c1.into(), c2.into(), p.into());
         self.ensure_subpath(c1);
-        self.kept.forget();
+        self.known.forget();
         self.verbs.push(Verb::CubicTo);
         self.points.extend([c1, c2, p]);
         self
@@ -144,7 +144,7 @@ impl Path {
 
     /// Appends all segments of `other`, mapped by `transform`.
     pub fn extend(&mut self, other: &Path, transform: Transform) -> &mut Self {
-        self.kept.forget();
+        self.known.forget();
         self.verbs.extend_from_slice(&other.verbs);
         self.points.extend(other.points.iter().map(|p| transform.map(*p)));
         if !other.is_empty() {
@@ -164,12 +164,12 @@ impl Path {
     /// The bounding box of all points, control points included; `None` for an empty path or one with
     /// a non-finite point.
     pub fn control_bounds(&self) -> Option<Rect> {
-        self.kept.bounds(&self.points)
+        self.known.bounds(&self.points)
     }
 
     /// What a recording may share instead of copying the segments; `None` if they are few or drawn for the first time.
     pub(crate) fn shared_outline(&self) -> Option<&Arc<Outline>> {
-        self.kept.outline(&self.verbs, &self.points)
+        self.known.outline(&self.verbs, &self.points)
     }
 
     /// The rectangle that filling the path covers, if the path is one rectangle with edges along the axes.

@@ -6,7 +6,7 @@ mod dash;
 mod far;
 pub(crate) mod flatten;
 mod hit;
-mod kept;
+mod known;
 mod measure;
 mod outline;
 pub(crate) mod polygons;
@@ -17,6 +17,6 @@ mod stroke_style;
 mod svg_data;
 
 pub use builder::{Path, Segment, Verb};
-pub(crate) use kept::Outline;
+pub(crate) use known::Outline;
 pub use shapes::Radii;
 pub use stroke_style::{Dash, LineCap, LineJoin, Stroke};

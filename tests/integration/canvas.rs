@@ -227,6 +227,62 @@ fn clips_survive_a_flush_and_a_read() {
     assert!(whole.pixel(20, 28) == Some([0, 255, 0, 255]) && whole.pixel(2, 28) == Some([255; 4]));
 }
 
+/// From the second drawing on recordings share what a path is made of.
+#[test]
+fn a_path_that_is_drawn_again_looks_as_it_did_the_first_time() {
+    let flower = |petals: u16| {
+        let mut path = Path::new();
+        for petal in 0..petals {
+            let angle = f32::from(petal);
+            path.circle((20.0 + 9.0 * angle.cos(), 20.0 + 9.0 * angle.sin()), 6.5);
+        }
+        path
+    };
+    let draw = |canvas: &mut Canvas<'_>, path: &Path| {
+        canvas.save();
+        canvas.translate(3.25, -2.5);
+        canvas.clip_path(path, FillRule::EvenOdd, Antialias::Analytic);
+        canvas.fill(Color::RED);
+        canvas.restore();
+        canvas.fill_path(path, FillRule::EvenOdd, HALF_BLACK);
+        canvas.stroke_path(path, &Stroke::new(1.5), Color::GREEN);
+    };
+    let fresh = |petals: u16| drawn(40, 40, |canvas| draw(canvas, &flower(petals)));
+    let (mut path, mut canvas) = (flower(5), Canvas::new(40, 40).unwrap());
+    // Among other paths, at other places in the recording, and after a change.
+    for round in 0..5 {
+        canvas.clear(Color::TRANSPARENT);
+        if round % 2 == 0 {
+            draw(&mut canvas, &flower(3));
+            canvas.clear(Color::TRANSPARENT);
+        }
+        draw(&mut canvas, &path);
+        assert!(canvas.read_pixels(IntRect::from_xywh(0, 0, 40, 40)).unwrap() == fresh(5), "round {round}");
+    }
+    path.extend(&flower(6), Transform::IDENTITY);
+    let longer = drawn(40, 40, |canvas| {
+        let mut path = flower(5);
+        path.extend(&flower(6), Transform::IDENTITY);
+        draw(canvas, &path);
+    });
+    for round in 0..3 {
+        canvas.clear(Color::TRANSPARENT);
+        draw(&mut canvas, &path);
+        assert!(canvas.read_pixels(IntRect::from_xywh(0, 0, 40, 40)).unwrap() == longer, "round {round} of the change");
+    }
+    // A clip that outlives the recording, by a path that does not outlive the call.
+    canvas.clear(Color::TRANSPARENT);
+    {
+        let path = flower(5);
+        let _ = drawn(40, 40, |other| (0..2).for_each(|_| draw(other, &path)));
+        canvas.clip_path(&path, FillRule::NonZero, Antialias::Analytic);
+    }
+    canvas.flush().unwrap();
+    canvas.fill(Color::BLUE);
+    let clipped = drawn(40, 40, |canvas| canvas.fill_path(&flower(5), FillRule::NonZero, Color::BLUE));
+    assert!(canvas.into_pixmap() == clipped);
+}
+
 #[test]
 fn a_mask_multiplies_by_its_values() {
     let picture = drawn(6, 2, |canvas| {

@@ -1,4 +1,4 @@
-//! What is kept of a path for as long as it does not change: a path is often drawn more than once.
+//! What is known of a path for as long as it does not change: a path is often drawn more than once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -25,7 +25,7 @@ impl Outline {
 
 /// It says nothing new of the path, and so does not count when paths are compared.
 #[derive(Debug, Default)]
-pub(super) struct Kept {
+pub(super) struct Known {
     /// The bounds of the points, once somebody asked.
     bounds: OnceLock<Option<Rect>>,
     /// Whether the path was drawn.
@@ -34,7 +34,7 @@ pub(super) struct Kept {
     outline: OnceLock<Arc<Outline>>,
 }
 
-impl Kept {
+impl Known {
     /// To be called wherever the path changes.
     #[inline(always)]
     pub(super) fn forget(&mut self) {
@@ -62,14 +62,14 @@ impl Kept {
     }
 }
 
-impl Clone for Kept {
+impl Clone for Known {
     fn clone(&self) -> Self {
         let drawn = AtomicBool::new(self.drawn.load(Ordering::Relaxed));
         Self { bounds: self.bounds.clone(), drawn, outline: self.outline.clone() }
     }
 }
 
-impl PartialEq for Kept {
+impl PartialEq for Known {
     fn eq(&self, _: &Self) -> bool {
         true
     }
