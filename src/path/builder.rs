@@ -348,7 +348,7 @@ mod tests {
             if let Some(end) = end {
                 path.line_to(end);
             }
-            while path.points().len() < 16 {
+            while path.points().len() < 32 {
                 path.line_to((7.0, 8.0));
             }
             assert!(path.shared_outline().is_none(), "drawn once");

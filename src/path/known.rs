@@ -7,7 +7,7 @@ use super::Verb;
 use crate::geom::{Point, Rect};
 
 /// Outlines of fewer points are copied faster than shared.
-const FEWEST_POINTS: usize = 16;
+const FEWEST_POINTS: usize = 32;
 
 /// The segments of a path as it was.
 #[derive(Debug)]

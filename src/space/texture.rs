@@ -118,6 +118,7 @@ impl Texture {
     }
 
     /// The same for textures that take at most so many bytes: half the picture's size, a quarter and so on, where it is larger.
+    #[cfg(feature = "mesh")]
     pub(crate) fn within(pixmap: Pixmap, sampler: Sampler, most: usize) -> Result<Self> {
         let mut plain = Plain::of(&pixmap);
         // What it was is as large as what it becomes.
@@ -423,6 +424,7 @@ impl Plain {
     }
 
     /// The bytes of a texture of these texels.
+    #[cfg(feature = "mesh")]
     fn texture_bytes(&self, sampler: Sampler) -> usize {
         let mut size = self.size;
         let level = |[width, height, depth]: [usize; 3]| (width + 1) * height * depth * size_of::<[u32; 2]>();
