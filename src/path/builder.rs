@@ -40,8 +40,8 @@ pub enum Segment {
 ///
 /// Methods that add segments return the path, so that they chain. A segment without a
 /// [`move_to`](Path::move_to) before it starts where the last subpath started, or, in an empty path, at its own
-/// first point, as on an HTML canvas. From the second drawing on a path that does not change keeps a copy of its segments, which
-/// recordings then share instead of copying them anew. Non-finite points are kept here and end the drawing of the
+/// first point, as on an HTML canvas. From the second drawing on a path of 32 points and more that does not change keeps a copy of
+/// its segments, which recordings then share instead of copying them anew. Non-finite points are kept here and end the drawing of the
 /// whole path: a path with such a point draws nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path {

@@ -56,7 +56,7 @@ pub(crate) fn add_edges<S: Simd>(
             while others != 0 {
                 let lane = others.trailing_zeros() as usize & 7;
                 others &= others - 1;
-                add_downward::<S, false>(simd, cells, eight.downward(lane, top), top, strips, reaches);
+                add_downward(simd, cells, eight.downward(lane, top), top, strips, reaches);
             }
         },
     );
@@ -262,7 +262,7 @@ fn add_tall_inner<S: Simd>(
             if pieces.flat >> lane & 1 != 0 || !seen {
                 let y = top + strip_top + pieces.below[lane];
                 let (start, end) = ((from[lane], y), (to[lane], y + height));
-                add_strip_part::<S, false>(simd, cells, index, start, end, eight.slant(lane), top, reaches);
+                add_strip_part(simd, cells, index, start, end, eight.slant(lane), top, reaches);
             } else if let Some(strip) = cells.strip(index) {
                 let (below, start, slant) = (pieces.below[lane], pieces.start[lane], eight.slant(lane));
                 let parts = RowParts::of(simd, PieceLine { below, height, start, slant });
@@ -540,7 +540,7 @@ mod tests {
             let mut expected = Accumulator::default();
             expected.resize(40, STRIPS);
             dispatch!(SimdLevel::Scalar, simd => edges.for_each(
-                |edge| add_edge::<_, false>(simd, &mut expected, edge, 256, STRIPS, &reaches)));
+                |edge| add_edge(simd, &mut expected, edge, 256, STRIPS, &reaches)));
             for level in SimdLevel::available() {
                 let mut cells = Accumulator::default();
                 cells.resize(40, STRIPS);

@@ -311,8 +311,8 @@ impl EdgeBins {
             open_right,
             #[inline(always)]
             |edge| {
-                // Level edges inside of a row matter to exact coverage, those between rows to nothing.
-                let matters = edge.y0 != edge.y1 || edge.y0 & (fixed::ONE - 1) != 0;
+                // Level edges inside of a strip matter to exact coverage, those between strips to nothing.
+                let matters = edge.y0 != edge.y1 || edge.y0 & ((1 << STRIP_SHIFT) - 1) != 0;
                 if matters && u32::try_from(points.len() + 2).is_ok() {
                     let (from, to) = (FixedPoint { x: edge.x0, y: edge.y0 }, FixedPoint { x: edge.x1, y: edge.y1 });
                     // Most edges go on where the last one ended.

@@ -30,8 +30,6 @@ pub(crate) struct Strip {
     pub(crate) columns: Vec<Column>,
     /// One bit for each block of 16 columns that may hold values.
     pub(crate) occupied: Vec<u64>,
-    /// For each column which rows edges pass through; empty until exact antialiasing first needs it.
-    pub(super) marks: Vec<Marks>,
     /// Sums of more edges than `columns` can hold; empty but while a crowd of edges is added.
     pub(super) wide: Vec<[i64; BLOCK_HEIGHT]>,
 }
@@ -45,20 +43,12 @@ impl Accumulator {
         for strip in &mut self.strips {
             strip.columns.resize(blocks * BLOCK_WIDTH, Column::default());
             strip.occupied.resize(blocks.div_ceil(64), 0);
-            strip.marks.clear();
         }
     }
 
     /// Whether some block of strip `index` is occupied.
     pub(crate) fn is_occupied(&self, index: usize) -> bool {
         self.strips.get(index).is_some_and(|strip| strip.occupied.iter().any(|word| *word != 0))
-    }
-
-    /// Makes room for the marks of exact antialiasing.
-    pub(super) fn keep_marks(&mut self) {
-        for strip in &mut self.strips {
-            strip.marks.resize(strip.columns.len(), Marks::default());
-        }
     }
 
     /// Moves all values to where there is room for any number of them.
@@ -98,44 +88,11 @@ impl Accumulator {
         self.strips.iter_mut().for_each(|strip| strip.wide.clear());
     }
 
-    /// The marks of a pixel's column.
-    #[inline(always)]
-    pub(super) fn marks(&mut self, pixel: BandPixel) -> Option<&mut Marks> {
-        self.strips.get_mut(pixel.strip)?.marks.get_mut(pixel.column)
-    }
-
     /// The accumulator of strip `index`, or `None` past the last.
     #[inline(always)]
     pub(crate) fn strip(&mut self, index: usize) -> Option<&mut Strip> {
         self.strips.get_mut(index)
     }
-}
-
-/// Rows of a column, as bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Marks {
-    /// An edge touches the pixel.
-    pub(super) once: u8,
-    /// A second one does.
-    pub(super) twice: u8,
-    /// The pixel is one of several side by side that are touched, one of them twice.
-    pub(super) cluster: u8,
-}
-
-impl Marks {
-    #[inline(always)]
-    pub(super) fn touch(&mut self, rows: u8) {
-        self.twice |= self.once & rows;
-        self.once |= rows;
-    }
-}
-
-/// A pixel of a band.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) struct BandPixel {
-    pub(super) strip: usize,
-    pub(super) column: usize,
-    pub(super) row: usize,
 }
 
 impl Strip {

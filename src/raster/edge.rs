@@ -33,28 +33,6 @@ impl Edge {
     }
 }
 
-impl Edge {
-    /// Whether `next` starts where this edge ends.
-    #[inline(always)]
-    pub(crate) fn meets(self, next: Self) -> bool {
-        (self.x1, self.y1) == (next.x0, next.y0)
-    }
-
-    /// Which way one turns from this edge's direction to that of `next`: −1, 1, or 0 if they are parallel.
-    #[inline(always)]
-    pub(crate) fn turn_to(self, next: Self) -> i64 {
-        let (dx, dy) = (i64::from(self.x1 - self.x0), i64::from(self.y1 - self.y0));
-        let (next_dx, next_dy) = (i64::from(next.x1 - next.x0), i64::from(next.y1 - next.y0));
-        (dx * next_dy - dy * next_dx).signum()
-    }
-
-    /// Whether `next` goes up or down as this edge does.
-    #[inline(always)]
-    pub(crate) fn goes_on_with(self, next: Self) -> bool {
-        (self.y0 < self.y1) == (next.y0 < next.y1)
-    }
-}
-
 /// A line through an edge, from which x at any y is one multiplication away.
 ///
 /// x(y) is a pure function of the edge and of y, so that bands, strips and rows that share a scanline

@@ -1,710 +1,544 @@
-//! Exact coverage where edges meet inside a pixel.
+//! Exact coverage where outlines cross.
 //!
-//! Summed areas are exact for a pixel that one edge passes through. Where two do, the sum knows how much
-//! each covers, not how much both do: the fill rule then has to be applied to the windings before
-//! the areas are added. (Two that follow each other count as one where they meet.)
+//! Sums of areas are coverage as long as windings are 0 and 1. In a strip where they are not, edges are cut where they
+//! cross each other, and of the pieces only those are added that have the inside on one side and the outside on the other,
+//! each winding so that what is inside is wound around once:
 //!
-//! While edges are added, each notes the pixels that it touches ([`touch`](super::touch)). A pixel that was touched twice is looked at again:
+//! 1. Edges whose columns overlap, and theirs, are a *group* ([`Resolver::groups`]). No edge comes between two groups, so that the winding
+//!    there is the same in all of the strip's rows.
+//! 2. A group is walked from top to bottom, from one y at which an edge starts, ends or crosses another to the next: between two of
+//!    them (a *scanbeam*, after Vatti, *A generic solution to polygon clipping*, 1992) edges have an order from left to
+//!    right, and by the windings between them the fill rule says of each whether it bounds the inside ([`Walk::count`]).
+//! 3. What an edge bounds from one change to the next is a piece, and added as any edge is ([`kernel`](super::kernel)).
 //!
-//! 1. Touched pixels side by side in a row, one of them twice, are a *cluster* ([`find_clusters`]). The pixel left of it
-//!    is touched by no edge, so that its sum is the winding along the whole of the cluster's left side.
-//! 2. The parts of edges that lie in clusters are gathered ([`gather`]), and each cluster is walked from left to right.
-//! 3. A pixel is cut where parts begin or end in it into slabs ([`Slabs`]); eight or more scanlines, lanes of a vector, are
-//!    shared out among the slabs and followed from crossing to crossing, and what of them is inside is added up.
-//! 4. The cells of the pixel and of its right neighbour are changed so that the sweep finds that value.
+//! Crossings are rounded to 1/256 pixel, as corners are. The order is that in the middle between two such heights, so
+//! that windings always add up: what rounding changes is some 2^-17 of a pixel, never a row.
 
-use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::Simd;
 
-use super::cell::{Column, FULL, Marks, Strip};
-use super::edge::Edge;
-use super::kernel::{RowParts, STRIP_SHIFT, Slant, for_strip_parts};
-use super::sample::inside;
+use super::bins::Edges;
+use super::cell::Accumulator;
+use super::edge::{Edge, FineLine};
+use super::kernel::{Reach, STRIP_SHIFT, Slant, add_strip_part};
 use crate::num::fixed;
-use crate::num::lanes::{greater_f32, lesser_f32};
 use crate::style::FillRule;
-use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
-/// Pixels with more parts than this are resolved scanline by scanline.
-const MOST_CROSSINGS: usize = 16;
-/// In rows whose parts touch more pixels than this, counted for each, summed areas stay: at such density, which of them
-/// are inside no longer shows, and a row's cost stays within bounds.
-const MOST_TOUCHES: usize = 1 << 14;
-/// Pixels cut into more slabs than this are cut evenly instead.
-const MOST_SLABS: usize = 12;
-const EVEN_SLABS: i32 = 8;
-/// x of what winds around a pixel's left side: left of all that is in the pixel.
-const FAR_LEFT: f32 = 1e9;
-/// A pixel is seen along so many scanlines at most: where parts run over more pixels than [`FLAT`] per row, since they
-/// sweep it between two of fewer.
-const MOST_SCANLINES: usize = 32;
-const FLAT: f32 = 2.0;
+/// So many looks at edges in one strip are too many: areas stay as they are summed. At such density, which of them are
+/// inside no longer shows, and a strip's cost stays within bounds.
+const MOST_LOOKS: usize = 1 << 20;
 
-/// Working memory.
+/// Pieces that bound the inside of a shape, and working memory.
 #[derive(Debug, Default)]
-pub(crate) struct ExactScratch {
-    rows: [Row; BLOCK_HEIGHT],
-    window: Window,
+pub(crate) struct Resolver {
+    /// The edges of each strip.
+    strips: Vec<Vec<Line>>,
+    pieces: Vec<Piece>,
+    /// The lines of the strip in work by where they start: from the left, then, of a group, from the top.
+    order: Vec<u64>,
+    active: Vec<Active>,
 }
 
-/// What is to be resolved in one row of a strip.
-#[derive(Debug, Default)]
-struct Row {
-    /// The parts of edges that lie in clusters.
-    parts: Vec<Part>,
-    /// The clusters' first columns, and the winding left of each.
-    clusters: Vec<(i32, i32)>,
-    /// Pixels touched twice: their columns and summed areas.
-    pixels: Vec<(i32, i32)>,
-    /// How many pixels the parts touch, those that several touch counted as often.
-    touches: usize,
-    /// Whether there were too many.
-    crowded: bool,
-}
-
-/// The part of an edge in one row. Heights in 1/256 pixel from the row's top.
+/// An edge in one strip. Heights in 1/256 pixel from the strip's top, x in 20.12 fixed point.
 #[derive(Clone, Copy, Debug)]
-struct Part {
-    /// The columns that it touches.
-    first: i32,
-    last: i32,
-    /// x at the row's top, in 1/256 pixel right of the left side of column `base`.
-    x: f32,
-    base: i32,
-    /// Change of x per unit of y.
-    slope: f32,
-    y0: i32,
-    y1: i32,
-    winding: i32,
-}
-
-impl Row {
-    fn clear(&mut self) {
-        self.parts.clear();
-        self.clusters.clear();
-        self.pixels.clear();
-        self.touches = 0;
-        self.crowded = false;
-    }
-
-    #[inline(always)]
-    fn add(&mut self, part: Part) {
-        self.parts.push(part);
-        self.touches += part.touches();
-        if self.touches > MOST_TOUCHES {
-            self.thin();
-        }
-    }
-
-    /// Gives a row up, unless it has so many parts because they are the same.
-    #[cold]
-    fn thin(&mut self) {
-        self.sort();
-        self.touches = self.parts.iter().map(Part::touches).sum();
-        self.crowded |= self.touches > MOST_TOUCHES / 2;
-    }
-
-    /// Puts the parts in order of their first column; those that are the same become one.
-    fn sort(&mut self) {
-        self.parts.sort_unstable_by_key(|part| u64::from(part.first as u32) << 32 | u64::from(part.x.to_bits()));
-        self.parts.dedup_by(|part, kept| {
-            let place = |part: &Part| (part.first, part.base, part.x, part.slope, part.y0, part.y1);
-            let same = place(part) == place(kept);
-            if same {
-                kept.winding = kept.winding.saturating_add(part.winding);
-            }
-            same
-        });
-    }
-}
-
-impl Part {
-    #[inline(always)]
-    fn touches(&self) -> usize {
-        (self.last - self.first + 1).max(1) as usize
-    }
-}
-
-/// Resolves the pixels of a strip that were touched twice, and clears the marks. `top` is the strip's top in fixed
-/// point; `edges` are all that were added to it.
-#[inline(always)]
-pub(crate) fn resolve<S: Simd>(
-    simd: S,
-    cells: &mut Strip,
-    edges: &[Edge],
+struct Line {
+    x: FineLine,
+    /// Where the edge starts, which may be above the strip.
+    start: i32,
+    /// Where it ends, which may be below.
+    end: (i32, i32),
+    /// What of it lies in the strip; the same where it is level.
     top: i32,
-    rule: FillRule,
-    scratch: &mut ExactScratch,
-) {
-    if find_clusters(cells) {
-        scratch.rows.iter_mut().for_each(Row::clear);
-        list_pixels(simd, cells, &mut scratch.rows);
-        for edge in edges {
-            gather(simd, cells, edge, top, &mut scratch.rows);
-        }
-        for (index, row) in scratch.rows.iter_mut().enumerate() {
-            if !row.pixels.is_empty() && !row.crowded {
-                row.sort();
-                resolve_row(simd, &mut cells.columns, index, row, rule, &mut scratch.window);
-            }
-        }
-    }
-    let Strip { marks, occupied, .. } = cells;
-    for_occupied(occupied, |block| {
-        for marks in block_of(marks, block) {
-            *marks = Marks::default();
-        }
-    });
+    bottom: i32,
+    left: i32,
+    right: i32,
+    slant: Slant,
+    /// How it winds around the inside from `since` on: 1 or -1, or 0 where it does not bound it.
+    bounds: i32,
+    since: i32,
 }
 
-/// The columns of a block.
-#[inline(always)]
-fn block_of<T>(columns: &mut [T], block: usize) -> &mut [T] {
-    columns.get_mut(block * BLOCK_WIDTH..(block + 1) * BLOCK_WIDTH).unwrap_or(&mut [])
+/// A line that the scanbeam in work crosses.
+#[derive(Clone, Copy, Debug)]
+struct Active {
+    /// x in 1/4096 pixel, just below the scanbeam's top.
+    x: f64,
+    line: u32,
 }
 
-#[inline(always)]
-fn for_occupied(occupied: &[u64], mut f: impl FnMut(usize)) {
-    for (index, word) in occupied.iter().enumerate() {
-        let mut bits = *word;
-        while bits != 0 {
-            f(index * 64 + bits.trailing_zeros() as usize);
-            bits &= bits - 1;
-        }
-    }
+/// A piece of an edge in one strip: where it starts and ends, x in 20.12 and y in 24.8 fixed point.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    strip: u32,
+    start: (i32, i32),
+    end: (i32, i32),
+    slant: Slant,
 }
 
-/// Marks the clusters, all rows at a time; false if there is none.
-#[inline(always)]
-fn find_clusters(cells: &mut Strip) -> bool {
-    let Strip { marks, occupied, .. } = cells;
-    let mut any = 0;
-    for_occupied(occupied, |block| {
-        for marks in block_of(marks, block) {
-            any |= marks.twice;
-        }
-    });
-    if any == 0 {
-        return false;
-    }
-    // To the right of a pixel touched twice, then to the left of what that found.
-    let (mut carry, mut before) = (0, usize::MAX);
-    for_occupied(occupied, |block| {
-        if block != before.wrapping_add(1) {
-            carry = 0;
-        }
-        for marks in block_of(marks, block) {
-            carry = marks.once & (marks.twice | carry);
-            marks.cluster = carry;
-        }
-        before = block;
-    });
-    let (mut carry, mut before) = (0, usize::MAX);
-    for (index, word) in occupied.iter().enumerate().rev() {
-        let mut bits = *word;
-        while bits != 0 {
-            let bit = 63 - bits.leading_zeros() as usize;
-            bits ^= 1 << bit;
-            let block = index * 64 + bit;
-            if block + 1 != before {
-                carry = 0;
-            }
-            for marks in block_of(marks, block).iter_mut().rev() {
-                carry = marks.once & (marks.cluster | carry);
-                marks.cluster = carry;
-            }
-            before = block;
-        }
-    }
-    true
-}
-
-/// Lists for each row the clusters with the windings left of them, and the pixels with their sums.
-#[inline(always)]
-fn list_pixels<S: Simd>(simd: S, cells: &mut Strip, rows: &mut [Row; BLOCK_HEIGHT]) {
-    let mut sum = i32x8::splat(simd, 0);
-    let (mut left, mut before) = (0, usize::MAX);
-    let Strip { columns, marks, occupied, wide } = cells;
-    let (mut wide_sum, mut wide_end) = ([0_i64; BLOCK_HEIGHT], 0);
-    for_occupied(occupied, |block| {
-        if block != before.wrapping_add(1) {
-            left = 0;
-        }
-        before = block;
-        let start = (block * BLOCK_WIDTH) as i32;
-        for (column, (cell, marks)) in (start..).zip(block_of(columns, block).iter().zip(block_of(marks, block))) {
-            let old = sum;
-            sum += i32x8::load_array_ref(simd, &cell.0);
-            if marks.cluster == 0 {
-                left = 0;
-                continue;
-            }
-            let starts = marks.cluster & !left;
-            left = marks.cluster;
-            if starts != 0 {
-                let windings = old.to_array();
-                while wide_end < column as usize
-                    && let Some(values) = wide.get(wide_end)
-                {
-                    for (sum, value) in wide_sum.iter_mut().zip(values) {
-                        *sum += value;
-                    }
-                    wide_end += 1;
-                }
-                for_rows(starts, rows, |row, index| {
-                    let at = |lanes: &[i32; 8]| i64::from(lanes.get(index).copied().unwrap_or(0));
-                    let sum = if wide.is_empty() { at(&windings) } else { wide_sum.get(index).copied().unwrap_or(0) };
-                    // Rounded: beside a part that goes on in other rows, sums are right to some 1/2^17 only.
-                    let winding = (sum + i64::from(FULL / 2)) >> FULL.ilog2();
-                    row.clusters.push((column, winding as i32));
-                });
-            }
-            if marks.twice != 0 {
-                let sums = sum.to_array();
-                for_rows(marks.twice, rows, |row, index| {
-                    row.pixels.push((column, sums.get(index).copied().unwrap_or(0)));
-                });
-            }
-        }
-    });
-}
-
-#[inline(always)]
-fn for_rows(mut bits: u8, rows: &mut [Row; BLOCK_HEIGHT], mut f: impl FnMut(&mut Row, usize)) {
-    while bits != 0 {
-        let index = bits.trailing_zeros() as usize;
-        bits &= bits - 1;
-        if let Some(row) = rows.get_mut(index) {
-            f(row, index);
-        }
-    }
-}
-
-/// Lists the parts of an edge that lie in clusters of the strip at `top`.
-#[inline(always)]
-fn gather<S: Simd>(simd: S, cells: &Strip, edge: &Edge, top: i32, rows: &mut [Row; BLOCK_HEIGHT]) {
-    let (_, y0, _, y1, winding) = edge.downward();
-    if y1 <= top || y0 >= top + (1 << STRIP_SHIFT) || y0 == y1 {
-        return;
-    }
-    let slant = Slant::new(edge.downward());
-    for_strip_parts(
-        edge.downward(),
-        top,
-        1,
-        #[inline(always)]
-        |_, start, end| {
-            let (first, last) = RowParts::<S>::columns(start, end);
-            let within = cells.marks.get(first..=last).unwrap_or(&[]);
-            let mut found = 0;
-            for marks in within {
-                found |= marks.cluster;
-            }
-            if found == 0 {
-                return;
-            }
-            let parts = RowParts::new(simd, start, end, slant, top, first);
-            let (left, right) = (parts.left.to_array(), parts.right.to_array());
-            let (upper, lower) = (parts.upper.to_array(), parts.lower.to_array());
-            let y = start.1 - top;
-            for_rows(found, rows, |row, index| {
-                let at = |lanes: &[i32; 8]| lanes.get(index).copied().unwrap_or(0);
-                // Where a strip ends, x was rounded: the last part may end a little beyond.
-                let column = |lanes: &[f32; 8]| {
-                    ((lanes.get(index).copied().unwrap_or(0.0) * (1.0 / 256.0)) as usize).min(last - first)
-                };
-                let (from, to) = (column(&left), column(&right));
-                let reaches = within.get(from..=to.max(from)).unwrap_or(&[]);
-                let bit = 1 << index;
-                if !row.crowded && at(&lower) > at(&upper) && reaches.iter().any(|marks| marks.cluster & bit != 0) {
-                    let row_top = index as i32 * fixed::ONE;
-                    let (y0, y1) = (at(&upper) + y - row_top, at(&lower) + y - row_top);
-                    row.add(Part {
-                        first: (first + from) as i32,
-                        last: (first + to) as i32,
-                        x: parts.start + (row_top - y) as f32 * parts.slope,
-                        base: first as i32,
-                        slope: parts.slope,
-                        y0,
-                        y1,
-                        winding,
-                    });
-                }
-            });
-        },
-    );
-}
-
-/// The parts in the pixel in work, and what lies left of it.
-#[derive(Debug, Default)]
-struct Window {
-    parts: Vec<Part>,
-    /// The winding at the top of the pixel's left side, and how it changes further down: (y, difference).
-    winding: i32,
-    changes: Vec<(i32, i32)>,
-    sides: Sides,
-    slabs: Slabs,
-    /// Of one scanline: where it is crossed, a float's bits, and in the lower half by what winding.
-    crossings: Vec<u64>,
-}
-
-impl Window {
-    /// Starts a cluster.
-    fn start(&mut self, winding: i32) {
-        self.parts.clear();
-        self.changes.clear();
-        self.winding = winding;
-    }
-
-    /// Moves on to the pixel in `column`: parts that end left of it wind around it.
+impl Line {
+    /// x between two heights: `half` is twice the one below.
     #[inline(always)]
-    fn advance(&mut self, column: i32) {
-        let mut index = 0;
-        while let Some(part) = self.parts.get(index).copied() {
-            if part.last >= column {
-                index += 1;
-                continue;
-            }
-            self.parts.swap_remove(index);
-            self.change(part.y0, part.winding);
-            self.change(part.y1, -part.winding);
-        }
+    fn x_within(&self, half: i32) -> f64 {
+        self.x.x + self.x.slope * (0.5 * f64::from(half - 2 * self.start))
     }
 
+    /// x at a height within the strip.
     #[inline(always)]
-    fn change(&mut self, y: i32, winding: i32) {
-        if y <= 0 {
-            self.winding += winding;
-        } else if y < fixed::ONE {
-            if let Some(index) = self.changes.iter().position(|(other, _)| *other == y) {
-                let Some((_, sum)) = self.changes.get_mut(index) else { return };
-                *sum += winding;
-                if *sum == 0 {
-                    self.changes.swap_remove(index);
-                }
-            } else {
-                self.changes.push((y, winding));
-            }
-        }
-    }
-
-    /// Whether the sum of areas is right all the same: where the rule is linear between the lowest and the highest winding
-    /// that the pixel can have, or along every scanline, since [`Sides`] says so.
-    #[inline(always)]
-    fn is_summed(&mut self, rule: FillRule) -> bool {
-        let (mut low, mut high) = (self.winding, self.winding);
-        for winding in self.changes.iter().map(|(_, sum)| *sum).chain(self.parts.iter().map(|part| part.winding)) {
-            if winding < 0 {
-                low = low.saturating_add(winding);
-            } else {
-                high = high.saturating_add(winding);
-            }
-        }
-        let is_linear = match rule {
-            FillRule::EvenOdd => high - low <= 1,
-            FillRule::NonZero => low >= 0 && high <= 1 || low >= -1 && high <= 0 || low > 0 || high < 0,
-        };
-        if is_linear {
-            return true;
-        }
-        // The commonest case, and where two lines cross, answered at once.
-        if let [a, b] = &self.parts[..]
-            && self.changes.is_empty()
-        {
-            let (one, other) = (std::slice::from_ref(a), std::slice::from_ref(b));
-            return a.winding == -b.winding
-                && a.winding.abs() == 1
-                && self.winding.abs() <= 1
-                && (is_behind(one, other) || is_behind(other, one));
-        }
-        self.sides.are_in_order(self.winding, &self.parts, &mut self.changes)
+    fn x_at(&self, y: i32) -> i32 {
+        if y == self.end.1 { self.end.0 } else { self.x.x_at(y - self.start) }
     }
 }
 
-/// The parts in a pixel: those that wind as edges downwards do, and those that wind as edges upwards.
-#[derive(Debug, Default)]
-struct Sides {
-    down: Vec<Part>,
-    up: Vec<Part>,
-}
-
-impl Sides {
-    /// Whether every scanline crosses nothing, or one part of one kind, or one of that kind and right of it one that winds
-    /// against it: windings are then w and w ± 1 throughout, and always the same sign of the two.
-    #[inline(never)]
-    fn are_in_order(&mut self, winding: i32, parts: &[Part], changes: &mut [(i32, i32)]) -> bool {
-        const MOST: usize = 8;
-        if parts.len() + changes.len() > MOST || winding.abs() > 1 {
-            return false;
-        }
-        self.down.clear();
-        self.up.clear();
-        // What winds around the pixel's left side from one height to another is a part there.
-        changes.sort_unstable();
-        let mut around = 0;
-        for (index, (y0, change)) in changes.iter().enumerate() {
-            around += change;
-            let y1 = changes.get(index + 1).map_or(fixed::ONE, |(y, _)| *y);
-            let x = -FAR_LEFT;
-            let part = Part { first: 0, last: 0, x, base: 0, slope: 0.0, y0: *y0, y1, winding: around };
-            match around {
-                0 => {}
-                1 => self.down.push(part),
-                -1 => self.up.push(part),
-                _ => return false,
-            }
-        }
-        for part in parts {
-            match part.winding {
-                1 => self.down.push(*part),
-                -1 => self.up.push(*part),
-                _ => return false,
-            }
-        }
-        is_behind(&self.up, &self.down) || is_behind(&self.down, &self.up)
-    }
-}
-
-/// Whether, on every scanline that crosses one of `second`, one of `first` is crossed left of it, and never two of a kind.
-fn is_behind(second: &[Part], first: &[Part]) -> bool {
-    let common = |a: &Part, b: &Part| {
-        let (top, bottom) = (if a.y0 > b.y0 { a.y0 } else { b.y0 }, if a.y1 < b.y1 { a.y1 } else { b.y1 });
-        (top < bottom).then_some((top, bottom))
-    };
-    let single = |parts: &[Part]| {
-        let others = |index: usize| parts.get(index + 1..).unwrap_or(&[]);
-        parts.iter().enumerate().all(|(index, a)| others(index).iter().all(|b| common(a, b).is_none()))
-    };
-    single(first)
-        && single(second)
-        && second.iter().all(|part| {
-            let mut met = 0;
-            for before in first {
-                let Some((top, bottom)) = common(before, part) else { continue };
-                let apart = |y: i32| {
-                    let bases = ((before.base - part.base) * fixed::ONE) as f32;
-                    (before.x - part.x) + bases + (before.slope - part.slope) * y as f32
-                };
-                if apart(top) > 0.0 || apart(bottom) > 0.0 {
-                    return false;
-                }
-                met += bottom - top;
-            }
-            met == part.y1 - part.y0
-        })
-}
-
-/// The heights between which nothing begins or ends, in 1/256 pixel, and scanlines between them.
-#[derive(Debug, Default)]
-struct Slabs {
-    cuts: Vec<i32>,
-    y: [f32; MOST_SCANLINES],
-    /// How much of the pixel's height each scanline stands for.
-    heights: [f32; MOST_SCANLINES],
-}
-
-impl Slabs {
-    fn cut(&mut self, parts: &[Part], changes: &[(i32, i32)], column: i32) {
-        self.cuts.clear();
-        self.cuts.extend([0, fixed::ONE]);
-        let ends = parts.iter().flat_map(|part| [part.y0, part.y1]);
-        // A flat part comes and goes at the pixel's sides, between two scanlines of any number.
-        let sides = parts.iter().filter(|part| part.slope.abs() > FLAT).flat_map(|part| {
-            let offset = part.x + ((part.base - column) * fixed::ONE) as f32;
-            let at = |side: f32| {
-                let y = ((side - offset) / part.slope + 0.5) as i32;
-                if y > part.y0 && y < part.y1 { y } else { 0 }
+impl Resolver {
+    /// Finds the pieces that bound what of a shape lies in the strips below `top` (fixed point) that are `wanted`. A strip in
+    /// which there are too many gets none, and is not wanted any more. `edges` are with the level ones.
+    pub(crate) fn resolve(&mut self, edges: Edges<'_>, top: i32, wanted: &mut [bool], rule: FillRule) {
+        self.pieces.clear();
+        self.strips.resize_with(wanted.len().max(self.strips.len()), Vec::new);
+        self.strips.iter_mut().for_each(Vec::clear);
+        edges.for_all(
+            #[inline(always)]
+            |edge| list(&mut self.strips, edge, top, wanted),
+        );
+        for (strip, wanted) in wanted.iter_mut().enumerate() {
+            let before = self.pieces.len();
+            *wanted &= match rule {
+                FillRule::NonZero => self.walk::<false>(strip, top),
+                FillRule::EvenOdd => self.walk::<true>(strip, top),
             };
-            [at(0.0), at(256.0)]
-        });
-        for y in changes.iter().map(|(y, _)| *y).chain(ends).chain(sides) {
-            if y > 0 && y < fixed::ONE && !self.cuts.contains(&y) {
-                self.cuts.push(y);
-                if self.cuts.len() > MOST_SLABS {
-                    self.cuts.clear();
-                    self.cuts.extend((0..=EVEN_SLABS).map(|i| i * fixed::ONE / EVEN_SLABS));
+            if !*wanted {
+                self.pieces.truncate(before);
+            }
+        }
+    }
+
+    /// Adds the pieces.
+    #[inline(always)]
+    pub(crate) fn add<S: Simd>(&self, simd: S, cells: &mut Accumulator, top: i32, reaches: &[Reach]) {
+        for Piece { strip, start, end, slant } in &self.pieces {
+            add_strip_part(simd, cells, *strip as usize, *start, *end, *slant, top, reaches);
+        }
+    }
+
+    /// Walks the groups of a strip; false if that takes too long.
+    fn walk<const EVEN_ODD: bool>(&mut self, strip: usize, top: i32) -> bool {
+        let Self { strips, pieces, order, active } = self;
+        let Some(lines) = strips.get_mut(strip) else { return true };
+        order.clear();
+        order.extend((0..).zip(&*lines).map(|(index, line)| entry(line.left, index)));
+        order.sort_unstable();
+        let highest = lines.iter().fold(i32::MAX, |highest, line| lesser(highest, line.top));
+        let top = top + ((strip as i32) << STRIP_SHIFT);
+        let mut walk = Walk { lines, pieces, active, strip: strip as u32, top, looks: 0 };
+        let (mut rest, mut winding) = (&mut order[..], 0);
+        while let [first, more @ ..] = &*rest {
+            let Some(line) = walk.line(*first) else { break };
+            // Below the top of what the shape has in the strip, the winding between groups is the same everywhere.
+            let change =
+                |line: &Line| if line.top == highest && line.bottom > highest { line.slant.winding } else { 0 };
+            let (mut reach, mut next) = (line.right, winding + change(line));
+            let more = more.iter().map_while(|entry| {
+                let line = walk.line(*entry)?;
+                (line.left <= reach).then(|| {
+                    reach = greater(reach, line.right);
+                    next += change(line);
+                })
+            });
+            let count = 1 + more.count();
+            let Some((group, others)) = std::mem::take(&mut rest).split_at_mut_checked(count) else { break };
+            match group {
+                [only] => walk.lone::<EVEN_ODD>(*only, winding),
+                _ => walk.group::<EVEN_ODD>(group, winding),
+            }
+            if walk.looks > MOST_LOOKS {
+                return false;
+            }
+            (rest, winding) = (others, next);
+        }
+        true
+    }
+}
+
+/// A walk through the lines of one strip.
+struct Walk<'a> {
+    lines: &'a mut [Line],
+    pieces: &'a mut Vec<Piece>,
+    active: &'a mut Vec<Active>,
+    strip: u32,
+    /// The strip's top in fixed point.
+    top: i32,
+    looks: usize,
+}
+
+impl Walk<'_> {
+    /// The line that an entry names.
+    #[inline(always)]
+    fn line(&self, entry: u64) -> Option<&Line> {
+        self.lines.get(entry as u32 as usize)
+    }
+
+    /// Finds the piece of a line that is a group by itself, left of which the winding is `winding`.
+    #[inline(always)]
+    fn lone<const EVEN_ODD: bool>(&mut self, entry: u64, winding: i32) {
+        let Self { lines, pieces, strip, top, .. } = self;
+        if let Some(line) = lines.get_mut(entry as u32 as usize)
+            && line.bottom > line.top
+        {
+            line.bounds = inside::<EVEN_ODD>(winding + line.slant.winding) - inside::<EVEN_ODD>(winding);
+            finish(line, line.bottom, *strip, *top, pieces);
+        }
+    }
+
+    /// Finds the pieces of a group, left of which the winding is `winding`. Puts it in another order.
+    fn group<const EVEN_ODD: bool>(&mut self, group: &mut [u64], winding: i32) {
+        for place in group.iter_mut() {
+            if let Some(line) = self.line(*place) {
+                *place = entry(line.top, *place as u32);
+            }
+        }
+        group.sort_unstable();
+        let mut pending = &*group;
+        self.active.clear();
+        while let [first, ..] = pending {
+            let mut y = place_of(*first);
+            loop {
+                while let [first, rest @ ..] = pending
+                    && place_of(*first) == y
+                {
+                    if self.line(*first).is_some_and(|line| line.bottom > y) {
+                        self.active.push(Active { x: 0.0, line: *first as u32 });
+                    }
+                    pending = rest;
+                }
+                if self.active.is_empty() {
+                    break;
+                }
+                let start = pending.first().map_or(i32::MAX, |first| place_of(*first));
+                let (end, crossing) = self.arrange(y, start);
+                self.apply::<EVEN_ODD>(y, winding);
+                self.looks += self.active.len();
+                if self.looks > MOST_LOOKS {
                     return;
                 }
+                y = lesser(lesser(start, end), crossing);
+                if y == end {
+                    self.retire(y);
+                }
             }
         }
-        self.cuts.sort_unstable();
     }
 
-    /// Gives each slab one scanline and more by its height, in the middles of equal parts; says in how many eights they are.
-    fn place_scanlines(&mut self, is_flat: bool) -> usize {
-        let slabs = self.cuts.len() as i32 - 1;
-        let eights = match slabs {
-            _ if is_flat => MOST_SCANLINES / 8,
-            0..=3 => 1,
-            _ => 2,
-        };
-        let spare = 8 * eights as i32 - slabs;
-        let mut lanes = self.y.iter_mut().zip(&mut self.heights).take(8 * eights);
-        for pair in self.cuts.windows(2) {
-            let [top, bottom] = *pair else { break };
-            let lines = 1 + (spare * (bottom - top)) / fixed::ONE;
-            let height = (bottom - top) as f32 / lines as f32;
-            let mut middle = top as f32 + 0.5 * height;
-            for (y, part) in lanes.by_ref().take(lines as usize) {
-                (*y, *part) = (middle, height);
-                middle += height;
+    /// Puts the lines in their order just below `y`, and says where the first one ends, and where the first two cross each
+    /// other, if that is above `start` and that end.
+    #[inline(always)]
+    fn arrange(&mut self, y: i32, start: i32) -> (i32, i32) {
+        let Self { lines, active, .. } = self;
+        let mut end = i32::MAX;
+        let mut sorted = f64::MIN;
+        for index in 0..active.len() {
+            let (done, rest) = active.split_at_mut(index);
+            let Some(moved) = rest.first_mut() else { break };
+            let Some(line) = lines.get(moved.line as usize) else { break };
+            end = lesser(end, line.bottom);
+            moved.x = line.x_within(2 * y + 1);
+            if moved.x >= sorted {
+                sorted = moved.x;
+                continue;
+            }
+            // It goes to where those left of it are not right of it.
+            let moved = *moved;
+            let place = done.iter().rposition(|other| other.x <= moved.x).map_or(0, |place| place + 1);
+            if let Some(part) = active.get_mut(place..=index) {
+                part.rotate_right(1);
             }
         }
-        for (_, part) in lanes {
-            *part = 0.0;
+        let bottom = lesser(start, end);
+        let mut crossing = bottom;
+        if bottom - y >= 2 {
+            // The first two that cross each other are neighbours.
+            let height = f64::from(bottom - y - 1);
+            let mut before = (f64::MIN, f64::MIN);
+            for active in &**active {
+                let Some(line) = lines.get(active.line as usize) else { break };
+                let (x, low) = (active.x, line.x_within(2 * bottom - 1));
+                if low < before.1 {
+                    let (gap, overlap) = (x - before.0, before.1 - low);
+                    crossing = lesser(crossing, (f64::from(y + 1) + height * (gap / (gap + overlap))) as i32);
+                }
+                before = (x, low);
+            }
         }
-        eights
+        (end, crossing)
+    }
+
+    /// Applies the fill rule to the windings between the lines from `y` on.
+    #[inline(always)]
+    fn apply<const EVEN_ODD: bool>(&mut self, y: i32, mut winding: i32) {
+        let Self { lines, active, pieces, strip, top, .. } = self;
+        let mut left = inside::<EVEN_ODD>(winding);
+        for active in &**active {
+            let Some(line) = lines.get_mut(active.line as usize) else { break };
+            winding += line.slant.winding;
+            let right = inside::<EVEN_ODD>(winding);
+            let bounds = right - left;
+            left = right;
+            if bounds != line.bounds {
+                finish(line, y, *strip, *top, pieces);
+                (line.bounds, line.since) = (bounds, y);
+            }
+        }
+    }
+
+    /// Ends the lines that end at `y`.
+    #[inline(always)]
+    fn retire(&mut self, y: i32) {
+        let Self { lines, active, pieces, strip, top, .. } = self;
+        active.retain(
+            #[inline(always)]
+            |active| {
+                let Some(line) = lines.get(active.line as usize) else { return false };
+                let ends = line.bottom == y;
+                if ends {
+                    finish(line, y, *strip, *top, pieces);
+                }
+                !ends
+            },
+        );
     }
 }
 
-/// Resolves the pixels of a row, whose parts are sorted by their first column.
+/// 1 if what winds so is inside, or else 0.
 #[inline(always)]
-fn resolve_row<S: Simd>(simd: S, columns: &mut [Column], index: usize, row: &Row, rule: FillRule, window: &mut Window) {
-    let mut parts = &row.parts[..];
-    let mut clusters = &row.clusters[..];
-    for (column, sum) in &row.pixels {
-        while let [(start, winding), rest @ ..] = clusters
-            && start <= column
-        {
-            window.start(*winding);
-            clusters = rest;
-            while let [part, rest @ ..] = parts
-                && part.last < *start
-            {
-                parts = rest;
+fn inside<const EVEN_ODD: bool>(winding: i32) -> i32 {
+    if EVEN_ODD { winding & 1 } else { (winding != 0) as i32 }
+}
+
+/// Lists the piece of a line that ends at `y`, if it bounds anything.
+#[inline(always)]
+fn finish(line: &Line, y: i32, strip: u32, top: i32, pieces: &mut Vec<Piece>) {
+    if line.bounds != 0 {
+        let slant = if line.bounds == line.slant.winding { line.slant } else { line.slant.reversed() };
+        // Mostly it is all of the line.
+        let (from, to) = if line.x.slope < 0.0 { (line.right, line.left) } else { (line.left, line.right) };
+        let from = if line.since == line.top { from } else { line.x_at(line.since) };
+        let to = if y == line.bottom { to } else { line.x_at(y) };
+        pieces.push(Piece { strip, start: (from, top + line.since), end: (to, top + y), slant });
+    }
+}
+
+/// Lists an edge in the wanted strips that it crosses.
+#[inline(always)]
+fn list(strips: &mut [Vec<Line>], edge: Edge, top: i32, wanted: &[bool]) {
+    const HEIGHT: i32 = 1 << STRIP_SHIFT;
+    const FINER: u32 = FineLine::SHIFT - fixed::SHIFT;
+    let (x0, y0, x1, y1, winding) = edge.downward();
+    let (y0, y1) = (y0 - top, y1 - top);
+    let level = y0 == y1;
+    // A level one at a strip's top is not in it.
+    let first = if y0 > 0 { y0 >> STRIP_SHIFT } else { 0 };
+    let last = (y1 - 1) >> STRIP_SHIFT;
+    let wanted = wanted.get(first as usize..).unwrap_or(&[]);
+    let mut line: Option<Line> = None;
+    for (strip, wanted) in (first..=last).zip(wanted) {
+        let Some(lines) = strips.get_mut(strip as usize).filter(|_| *wanted) else { continue };
+        let above = strip * HEIGHT;
+        let mut here = *line.get_or_insert_with(|| {
+            let (x, slant) = if level {
+                (FineLine { x: 0.0, slope: 0.0 }, Slant { slope: 0.0, steep: 0.0, winding })
+            } else {
+                (FineLine::new(x0, x1, y1 - y0), Slant::new((x0, y0, x1, y1, winding)))
+            };
+            let (left, right) = if x0 < x1 { (x0, x1) } else { (x1, x0) };
+            Line {
+                x,
+                slant,
+                start: 0,
+                end: (0, 0),
+                top: 0,
+                bottom: 0,
+                left: left << FINER,
+                right: right << FINER,
+                bounds: 0,
+                since: 0,
+            }
+        });
+        (here.start, here.end) = (y0 - above, (x1 << FINER, y1 - above));
+        here.top = greater(here.start, 0);
+        here.bottom = lesser(here.end.1, HEIGHT);
+        if !level {
+            let (from, to) = (if here.start >= 0 { x0 << FINER } else { here.x_at(0) }, here.x_at(here.bottom));
+            (here.left, here.right) = if from < to { (from, to) } else { (to, from) };
+        }
+        here.since = here.top;
+        lines.push(here);
+    }
+}
+
+/// What sorts by a place, and names a line.
+#[inline(always)]
+fn entry(place: i32, index: u32) -> u64 {
+    u64::from(place.cast_unsigned() ^ 1 << 31) << 32 | u64::from(index)
+}
+
+#[inline(always)]
+fn place_of(entry: u64) -> i32 {
+    ((entry >> 32) as u32 ^ 1 << 31).cast_signed()
+}
+
+#[inline(always)]
+fn lesser(a: i32, b: i32) -> i32 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greater(a: i32, b: i32) -> i32 {
+    if a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+    use crate::raster::cell::FULL;
+    use crate::raster::edge::FixedPoint;
+
+    const WIDTH: usize = 64;
+
+    /// Numbers below `end` (SplitMix64).
+    struct Random(u64);
+
+    impl Random {
+        fn below(&mut self, end: i32) -> i32 {
+            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut z = self.0;
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) % end as u64) as i32
+        }
+    }
+
+    /// How much of each pixel of two strips is inside outlines, by scanlines in the middles of all 1/256 pixels.
+    fn scanned(outlines: &[Vec<FixedPoint>], rule: FillRule) -> Vec<f64> {
+        let mut covered = vec![0.0; WIDTH * 16];
+        for scanline in 0..16 * 256 {
+            let y = f64::from(scanline) + 0.5;
+            let mut crossings = Vec::new();
+            for pair in outlines.iter().flat_map(|outline| outline.windows(2)) {
+                let [a, b] = [pair[0], pair[1]].map(|p| (f64::from(p.x), f64::from(p.y)));
+                if (a.1 < y) != (b.1 < y) {
+                    crossings.push((a.0 + (b.0 - a.0) * (y - a.1) / (b.1 - a.1), if a.1 < b.1 { 1 } else { -1 }));
+                }
+            }
+            crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut winding = 0;
+            for pair in crossings.windows(2) {
+                winding += pair[0].1;
+                let inside = match rule {
+                    FillRule::NonZero => winding != 0,
+                    FillRule::EvenOdd => winding % 2 != 0,
+                };
+                for column in 0..WIDTH {
+                    let (left, right) = (column as f64 * 256.0, column as f64 * 256.0 + 256.0);
+                    if inside {
+                        let part = (pair[1].0.min(right) - pair[0].0.max(left)).max(0.0);
+                        covered[scanline as usize / 256 * WIDTH + column] += part / 65_536.0;
+                    }
+                }
             }
         }
-        while let [part, rest @ ..] = parts
-            && part.first <= *column
-        {
-            window.parts.push(*part);
-            parts = rest;
-        }
-        window.advance(*column);
-        if window.is_summed(rule) {
-            continue;
-        }
-        let covered = match rule {
-            FillRule::NonZero => coverage::<S, false>(simd, window, *column),
-            FillRule::EvenOdd => coverage::<S, true>(simd, window, *column),
-        };
-        let covered = covered.unwrap_or_else(|| crowded_coverage(window, *column, rule));
-        if let Some([here, next]) = columns.get_mut(*column as usize..).and_then(|rest| rest.first_chunk_mut::<2>())
-            && let (Some(here), Some(next)) = (here.0.get_mut(index), next.0.get_mut(index))
-        {
-            *here = here.wrapping_add(covered - sum);
-            *next = next.wrapping_sub(covered - sum);
-        }
+        covered
     }
-}
 
-/// The covered area of the pixel in `column`, in 1/[`FULL`]; `None` if too many parts lie in it.
-///
-/// Scanlines are lanes; each slab gets some, all of it together at most [`MOST_SCANLINES`]. Between crossings, the middle of
-/// what a scanline stands for is exact.
-#[inline(always)]
-fn coverage<S: Simd, const EVEN_ODD: bool>(simd: S, window: &mut Window, column: i32) -> Option<i32> {
-    let Window { parts, winding, changes, slabs, .. } = window;
-    if parts.len() > MOST_CROSSINGS {
-        return None;
-    }
-    slabs.cut(parts, changes, column);
-    let is_flat = parts.iter().any(|part| part.slope.abs() > FLAT);
-    let eights = slabs.place_scanlines(is_flat);
-    let mut area = f32x8::splat(simd, 0.0);
-    for (y, height) in slabs.y.as_chunks::<8>().0.iter().zip(slabs.heights.as_chunks::<8>().0).take(eights) {
-        let y = f32x8::load_array_ref(simd, y);
-        let mut around = i32x8::splat(simd, *winding);
-        for (from, change) in changes.iter() {
-            around += y.simd_gt(*from as f32).select(i32x8::splat(simd, *change), i32x8::splat(simd, 0));
+    /// The same by pieces.
+    fn resolved(level: SimdLevel, outlines: &[Vec<FixedPoint>], rule: FillRule) -> Vec<f64> {
+        let points: Vec<FixedPoint> = outlines.concat();
+        let mut starts = Vec::new();
+        let mut first = 0;
+        for outline in outlines {
+            starts.extend(first..first + outline.len() as u32 - 1);
+            first += outline.len() as u32;
         }
-        // Few crossings stay in registers.
-        let inside = match parts.len() {
-            0..=2 => inside_along::<S, EVEN_ODD, 2>(simd, y, around, parts, column),
-            3..=4 => inside_along::<S, EVEN_ODD, 4>(simd, y, around, parts, column),
-            _ => inside_along::<S, EVEN_ODD, MOST_CROSSINGS>(simd, y, around, parts, column),
-        };
-        area += inside * f32x8::load_array_ref(simd, height);
-    }
-    let [a, b, c, d, e, f, g, h] = area.to_array();
-    let area = ((a + e) + (c + g)) + ((b + f) + (d + h));
-    Some((area * (FULL as f32 / 65_536.0) + 0.5) as i32)
-}
-
-/// How much of eight scanlines of the pixel in `column`, in 1/256 of its width, is inside; `parts` are at most `N`, and
-/// `around` is the winding along the pixel's left side.
-#[inline(always)]
-fn inside_along<S: Simd, const EVEN_ODD: bool, const N: usize>(
-    simd: S,
-    y: f32x8<S>,
-    mut around: i32x8<S>,
-    parts: &[Part],
-    column: i32,
-) -> f32x8<S> {
-    let zero = f32x8::splat(simd, 0.0);
-    let side = f32x8::splat(simd, 256.0);
-    let nothing = i32x8::splat(simd, 0);
-    let is_inside = |around: i32x8<S>| {
-        let residue = if EVEN_ODD { around & 1 } else { around };
-        residue.simd_eq(nothing)
-    };
-    // Where the scanlines are crossed, in order, and by what winding: each new crossing sinks to its place.
-    let mut places = [side; N];
-    let mut windings = [nothing; N];
-    for (count, part) in parts.iter().take(N).enumerate() {
-        let offset = part.x + ((part.base - column) * fixed::ONE) as f32;
-        let crosses = y.simd_gt(part.y0 as f32) & y.simd_lt(part.y1 as f32);
-        let place = lesser_f32(greater_f32(y * part.slope + offset, zero), side);
-        let mut place = crosses.select(place, side);
-        let mut crossing = crosses.select(i32x8::splat(simd, part.winding), nothing);
-        for (other, winding) in places.iter_mut().zip(&mut windings).take(count) {
-            let before = place.simd_lt(*other);
-            let (p, w) = (before.select(*other, place), before.select(*winding, crossing));
-            (*other, *winding) = (before.select(place, *other), before.select(crossing, *winding));
-            (place, crossing) = (p, w);
-        }
-        if let (Some(other), Some(winding)) = (places.get_mut(count), windings.get_mut(count)) {
-            (*other, *winding) = (place, crossing);
-        }
-    }
-    let (mut inside, mut at) = (zero, zero);
-    for (place, winding) in places.iter().zip(&windings).take(parts.len()) {
-        inside += is_inside(around).select(zero, *place - at);
-        around += *winding;
-        at = *place;
-    }
-    inside + is_inside(around).select(zero, side - at)
-}
-
-/// The covered area of a pixel with any number of parts, in 1/[`FULL`].
-#[inline(never)]
-fn crowded_coverage(window: &mut Window, column: i32, rule: FillRule) -> i32 {
-    const SCANLINES: i32 = 16;
-    let Window { parts, winding, changes, crossings, .. } = window;
-    let mut area = 0.0;
-    for scanline in 0..SCANLINES {
-        let y = (2 * scanline + 1) * fixed::ONE / (2 * SCANLINES);
-        crossings.clear();
-        crossings.extend(parts.iter().filter(|part| part.y0 <= y && y < part.y1).map(|part| {
-            let x = part.x + ((part.base - column) * fixed::ONE) as f32 + part.slope * y as f32;
-            // What is not below 0 has the order of its bits.
-            let x = if x > 0.0 { x } else { 0.0 };
-            u64::from((if x < 256.0 { x } else { 256.0 }).to_bits()) << 32 | u64::from(part.winding as u32)
-        }));
-        crossings.sort_unstable();
-        let mut around = *winding + changes.iter().map(|(from, sum)| if *from <= y { *sum } else { 0 }).sum::<i32>();
-        let mut at = 0.0;
-        for crossing in crossings.iter() {
-            let (x, winding) = (f32::from_bits((crossing >> 32) as u32), *crossing as u32 as i32);
-            if inside(around, rule) {
-                area += x - at;
+        let mut cells = Accumulator::default();
+        cells.resize(WIDTH, 2);
+        let mut resolver = Resolver::default();
+        let mut wanted = [true; 2];
+        resolver.resolve(Edges::of(&points, &starts), 0, &mut wanted, rule);
+        assert_eq!(wanted, [true; 2]);
+        dispatch!(level, simd => resolver.add(simd, &mut cells, 0, &[]));
+        let mut covered = Vec::new();
+        for row in 0..16 {
+            let mut sum = 0;
+            for column in &cells.strip(row / 8).unwrap().columns[..WIDTH] {
+                sum += column.0[row % 8];
+                covered.push(f64::from(sum) / f64::from(FULL));
             }
-            around = around.wrapping_add(winding);
-            at = x;
         }
-        if inside(around, rule) {
-            area += 256.0 - at;
+        covered
+    }
+
+    fn compare(outlines: &[Vec<FixedPoint>], what: &str) {
+        for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+            let expected = scanned(outlines, rule);
+            for level in SimdLevel::available() {
+                let found = resolved(level, outlines, rule);
+                for (index, (expected, found)) in expected.iter().zip(&found).enumerate() {
+                    let place = (index % WIDTH, index / WIDTH);
+                    assert!((expected - found).abs() < 0.008, "{what}, {rule:?}, {place:?}: {found}, not {expected}");
+                }
+            }
         }
     }
-    (area * (FULL as f32 / (256 * SCANLINES) as f32) + 0.5) as i32
+
+    fn closed(points: impl IntoIterator<Item = (i32, i32)>) -> Vec<FixedPoint> {
+        let mut outline: Vec<FixedPoint> = points.into_iter().map(|(x, y)| FixedPoint { x, y }).collect();
+        outline.push(outline[0]);
+        outline
+    }
+
+    #[test]
+    fn outlines_that_cross_are_covered_as_by_scanlines() {
+        let mut random = Random(1);
+        for round in 0..60 {
+            let outlines: Vec<_> = (0..1 + round % 3)
+                .map(|_| {
+                    let corners = 3 + random.below(12);
+                    closed((0..corners).map(|_| (random.below(60 * 256), random.below(16 * 256))))
+                })
+                .collect();
+            compare(&outlines, &format!("round {round}"));
+        }
+    }
+
+    /// Corners on few places: level and upright edges, edges that lie on each other, crossings in corners.
+    #[test]
+    fn outlines_that_meet_and_lie_on_each_other_are_covered_as_by_scanlines() {
+        let mut random = Random(2);
+        for round in 0..120 {
+            let outlines: Vec<_> = (0..1 + round % 4)
+                .map(|_| {
+                    let corners = 3 + random.below(6);
+                    closed((0..corners).map(|_| (random.below(5) * 640 + 100, random.below(9) * 512)))
+                })
+                .collect();
+            compare(&outlines, &format!("round {round}"));
+        }
+    }
+
+    #[test]
+    fn what_is_between_level_edges_is_inside_where_they_are_far_apart() {
+        let frame = |left, top, right, bottom| closed([(left, top), (right, top), (right, bottom), (left, bottom)]);
+        compare(&[frame(300, 700, 15_000, 3000), frame(900, 1000, 14_000, 2600)], "frames");
+        compare(&[frame(300, 700, 15_000, 3000), frame(14_000, 1000, 900, 2600)], "a hole");
+    }
+
+    #[test]
+    fn too_many_edges_are_given_up() {
+        let mut random = Random(3);
+        let outline = closed((0..4000).map(|_| (random.below(60 * 256), random.below(8 * 256))));
+        let starts: Vec<u32> = (0..outline.len() as u32 - 1).collect();
+        let mut resolver = Resolver::default();
+        let mut wanted = [true, true];
+        resolver.resolve(Edges::of(&outline, &starts), 0, &mut wanted, FillRule::NonZero);
+        assert_eq!(wanted, [false, true], "the second strip has nothing to give up");
+        assert!(resolver.pieces.is_empty());
+    }
 }

@@ -19,8 +19,10 @@ use fearless_simd::{f32x8, i32x8};
 
 use super::batch::add_edges;
 use super::bins::Edges;
-use super::cell::{Accumulator, Column, FULL, Marks, Strip};
-use super::edge::{Edge, EdgeLine, FineLine};
+use super::cell::{Accumulator, Column, FULL, Strip};
+#[cfg(test)]
+use super::edge::Edge;
+use super::edge::{EdgeLine, FineLine};
 use crate::num::fixed;
 use crate::num::lanes::{RAISED, greater_f32, lesser_f32, max_i32, min_i32, round_f64, round_raised_f32};
 use crate::style::FillRule;
@@ -80,13 +82,14 @@ impl Reach {
 }
 
 /// Adds the part of `edge` inside the band whose top is at `top` (fixed point, a whole strip) and which has
-/// `strips` strips. With `TOUCH`, notes which pixels it passes through.
+/// `strips` strips.
 ///
 /// Where an edge leaves a strip is a function of the edge and of that scanline, so that it does not
 /// matter in which band the strip is. `reaches` says of each strip which columns matter; all of those of strips that it
 /// does not have.
+#[cfg(test)]
 #[inline(always)]
-pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
+pub(super) fn add_edge<S: Simd>(
     simd: S,
     cells: &mut Accumulator,
     edge: Edge,
@@ -94,12 +97,12 @@ pub(crate) fn add_edge<S: Simd, const TOUCH: bool>(
     strips: usize,
     reaches: &[Reach],
 ) {
-    add_downward::<S, TOUCH>(simd, cells, edge.downward(), top, strips, reaches);
+    add_downward(simd, cells, edge.downward(), top, strips, reaches);
 }
 
 /// As [`add_edge`], for an edge as [`Edge::downward`] gives it.
 #[inline(always)]
-pub(super) fn add_downward<S: Simd, const TOUCH: bool>(
+pub(super) fn add_downward<S: Simd>(
     simd: S,
     cells: &mut Accumulator,
     edge: (i32, i32, i32, i32, i32),
@@ -113,7 +116,7 @@ pub(super) fn add_downward<S: Simd, const TOUCH: bool>(
         top,
         strips,
         #[inline(always)]
-        |index, start, end| add_strip_part::<S, TOUCH>(simd, cells, index, start, end, slant, top, reaches),
+        |index, start, end| add_strip_part(simd, cells, index, start, end, slant, top, reaches),
     );
 }
 
@@ -148,7 +151,7 @@ pub(super) fn for_strip_parts(
 /// Adds the part of an edge that lies in strip `index`, unless it lies where nothing matters.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "in the innermost loop; a struct would only rename them")]
-pub(super) fn add_strip_part<S: Simd, const TOUCH: bool>(
+pub(super) fn add_strip_part<S: Simd>(
     simd: S,
     cells: &mut Accumulator,
     index: usize,
@@ -168,14 +171,14 @@ pub(super) fn add_strip_part<S: Simd, const TOUCH: bool>(
         }
     }
     if let Some(strip) = cells.strip(index) {
-        add_piece::<S, TOUCH>(simd, strip, start, end, slant, top + ((index as i32) << STRIP_SHIFT));
+        add_piece(simd, strip, start, end, slant, top + ((index as i32) << STRIP_SHIFT));
     }
 }
 
 /// Adds the part of an edge that lies in one strip, from (start_x, start_y) down to (end_x, end_y); `top` is
 /// the strip's top. x in 20.12, y in 24.8 fixed point.
 #[inline(always)]
-fn add_piece<S: Simd, const TOUCH: bool>(
+fn add_piece<S: Simd>(
     simd: S,
     cells: &mut Strip,
     (start_x, start_y): (i32, i32),
@@ -186,15 +189,12 @@ fn add_piece<S: Simd, const TOUCH: bool>(
     let (first, last) = RowParts::<S>::columns((start_x, start_y), (end_x, end_y));
     if is_flat(first, last, end_y - start_y) {
         let round = |x: i32| (x + (1 << (FINE_SHIFT - fixed::SHIFT - 1))) >> (FINE_SHIFT - fixed::SHIFT);
-        add_flat::<TOUCH>(cells, round(start_x), start_y, round(end_x), end_y, top, slant.winding);
+        add_flat(cells, round(start_x), start_y, round(end_x), end_y, top, slant.winding);
         return;
     }
 
     let row = RowParts::new(simd, (start_x, start_y), (end_x, end_y), slant, top, first);
     add_row_parts(simd, cells, row, first, last);
-    if TOUCH {
-        row.touch(simd, cells.marks.get_mut(first..=last).unwrap_or(&mut []));
-    }
 }
 
 /// Adds parts that lie in columns `first ..= last`.
@@ -214,7 +214,7 @@ pub(super) fn add_row_parts<S: Simd>(simd: S, cells: &mut Strip, row: RowParts<S
 }
 
 /// The direction of an edge, which is that of its pieces in all strips.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Slant {
     /// The change of x per unit of y.
     pub(super) slope: f32,
@@ -235,6 +235,12 @@ impl Slant {
             steep: if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() },
             winding,
         }
+    }
+
+    /// That of an edge that winds the other way.
+    #[inline(always)]
+    pub(super) fn reversed(self) -> Self {
+        Self { steep: -self.steep, winding: -self.winding, ..self }
     }
 
     fn upright(self) -> Self {
@@ -272,12 +278,6 @@ pub(super) fn are_flat<S: Simd>(first: i32x8<S>, last: i32x8<S>, height: i32x8<S
 pub(super) struct RowParts<S: Simd> {
     pub(super) left: f32x8<S>,
     pub(super) right: f32x8<S>,
-    /// Where each part starts and ends, in 1/256 pixel below the edge's own start in the strip.
-    pub(super) upper: i32x8<S>,
-    pub(super) lower: i32x8<S>,
-    /// x where the edge starts in the strip, and its change per unit of y.
-    pub(super) start: f32,
-    pub(super) slope: f32,
     /// |dy / dx| times the winding.
     steep: f32x8<S>,
     /// What each 1/256 pixel right of a part adds.
@@ -325,26 +325,9 @@ impl<S: Simd> RowParts<S> {
         Self {
             left: lesser_f32(upper_x, lower_x),
             right: greater_f32(upper_x, lower_x),
-            upper,
-            lower,
-            start,
-            slope,
             steep: f32x8::splat(simd, steep),
             beyond: dy.to_float::<f32x8<S>>() * (2.0 * winding as f32),
             total: dy * (512 * winding),
-        }
-    }
-
-    /// Notes the rows of each column that the parts pass through.
-    #[inline(always)]
-    fn touch(self, simd: S, columns: &mut [Marks]) {
-        let climbs = self.lower.simd_gt(self.upper).to_bitmask() as u8;
-        let mut side = 0.0;
-        for marks in columns {
-            let starts = self.left.simd_lt(f32x8::splat(simd, side + 256.0)).to_bitmask() as u8;
-            let ends = self.right.simd_ge(f32x8::splat(simd, side)).to_bitmask() as u8;
-            marks.touch(climbs & starts & ends);
-            side += 256.0;
         }
     }
 }
@@ -448,15 +431,7 @@ impl Strip {
 
 /// Adds a flat piece row by row.
 #[inline(never)]
-fn add_flat<const TOUCH: bool>(
-    cells: &mut Strip,
-    start_x: i32,
-    start_y: i32,
-    end_x: i32,
-    end_y: i32,
-    top: i32,
-    winding: i32,
-) {
+fn add_flat(cells: &mut Strip, start_x: i32, start_y: i32, end_x: i32, end_y: i32, top: i32, winding: i32) {
     let line = EdgeLine::new(start_x, start_y, end_x, end_y);
     let (mut x, mut y) = (start_x, start_y);
     while y < end_y {
@@ -464,13 +439,6 @@ fn add_flat<const TOUCH: bool>(
         let next_y = end_y.min(top + ((row + 1) << fixed::SHIFT));
         let next_x = if next_y == end_y { end_x } else { line.x_at(next_y) };
         cells.add_row_piece(row as usize, x, next_x, (next_y - y) * winding);
-        if TOUCH {
-            let (left, right) = if x < next_x { (x, next_x) } else { (next_x, x) };
-            let (first, last) = (left >> fixed::SHIFT, (right >> fixed::SHIFT).max(left >> fixed::SHIFT));
-            for marks in cells.marks.get_mut(first as usize..=last as usize).unwrap_or(&mut []) {
-                marks.touch(1 << row);
-            }
-        }
         (x, y) = (next_x, next_y);
     }
 }
@@ -530,7 +498,7 @@ mod tests {
         let mut cells = Accumulator::default();
         cells.resize(width, 1);
         for edge in edges {
-            dispatch!(level, simd => add_edge::<_, true>(simd, &mut cells, *edge, 0, 1, &[]));
+            dispatch!(level, simd => add_edge(simd, &mut cells, *edge, 0, 1, &[]));
         }
         let strip = cells.strip(0).unwrap();
         let mut sum = [0_i32; 8];

@@ -30,5 +30,4 @@ pub(crate) mod sample;
 mod simple;
 mod stair;
 pub(crate) mod sweep;
-pub(crate) mod touch;
 pub mod triangulate;

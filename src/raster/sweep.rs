@@ -418,7 +418,7 @@ mod tests {
                     let FixedRect { left, top, right, bottom } = rect;
                     for (x, y0, y1) in [(left, top, bottom), (right, bottom, top)] {
                         let edge = Edge { x0: x, y0, x1: x, y1 };
-                        add_edge::<_, false>(simd, &mut cells, edge, 0, 1, &[]);
+                        add_edge(simd, &mut cells, edge, 0, 1, &[]);
                     }
                     sweep(simd, cells.strip(0).unwrap(), BLOCKS, CoverageRule::NonZero, &mut swept);
                     sweep_rect(simd, rect, 0, BLOCKS, &mut direct);

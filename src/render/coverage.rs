@@ -14,7 +14,7 @@ use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
 use crate::raster::kernel::Reach;
 use crate::raster::sweep::{BlockSink, CoverageRule, sweep, sweep_rect};
-use crate::raster::{exact, kernel, sample, touch};
+use crate::raster::{kernel, sample};
 use crate::style::{Antialias, FillRule};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
@@ -124,12 +124,7 @@ fn accumulate_inner<S: Simd>(
         let BandScratch { cells, reaches, visible, .. } = scratch;
         reaches.clear();
         reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
-        // Sums by the even-odd rule may wrap around: what is lost is even.
-        if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
-            kernel::add_crowd(simd, cells, edges, top, frame.strips, reaches);
-        } else {
-            add_edges(simd, cells, edges, top, frame.strips, reaches);
-        }
+        add_as_they_are(simd, cells, edges, top, frame.strips, rule, reaches);
         return Coverage::Cells(rule.into());
     }
     let grid = match antialias {
@@ -140,7 +135,7 @@ fn accumulate_inner<S: Simd>(
         Antialias::Supersample(grid) => grid.clamp(1, 16),
         Antialias::None | Antialias::Analytic => 1,
     };
-    let edges = &*listed(&mut scratch.edges, edges, false);
+    let edges = &*listed(&mut scratch.edges, edges);
     for strip in 0..frame.strips {
         if let Some(cells) = scratch.cells.strip(strip) {
             let strip_top = frame.strip_top(strip) << fixed::SHIFT;
@@ -150,50 +145,53 @@ fn accumulate_inner<S: Simd>(
     Coverage::Cells(CoverageRule::Samples(u16::from(grid) * u16::from(grid)))
 }
 
-/// Adds the edges of a shape that crosses itself, and looks again at the pixels in which sums of areas are not coverage.
+/// Adds the edges of a shape that crosses itself: as they are where it does not, or too often.
 #[inline(always)]
 fn add_exactly<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch, edges: Edges<'_>, rule: FillRule) {
     let top = frame.top << fixed::SHIFT;
-    let BandScratch { cells, reaches, visible, .. } = scratch;
-    let listed = &*listed(&mut scratch.edges, edges, true);
-    let crowded = edges.len() >= kernel::CROWD;
-    // Of each strip, what is seen of it; to find crossings all of its columns are needed.
+    let BandScratch { cells, reaches, visible, exact, crossed, .. } = scratch;
+    // Of each strip, what is seen of it.
     let seen = |strip: usize| visible.get(strip).map_or(Reach::EVERYTHING, |blocks| reach(*blocks));
-    let is_seen = |strip: usize| visible.get(strip).is_none_or(|(first, end)| first < end);
-    let is_crossed = |strip: usize| {
-        is_seen(strip)
+    crossed.clear();
+    crossed.extend((0..frame.strips).map(|strip| {
+        visible.get(strip).is_none_or(|(first, end)| first < end)
             && edges.crossed().is_none_or(|crossed| crossed.contains(&(frame.strip_top(strip) / BLOCK_HEIGHT as i32)))
-    };
-    if crowded {
-        touch::add_touching_crowd(simd, cells, listed, top, frame.strips, rule);
-    } else {
-        if edges.crossed().is_some() {
-            reaches.clear();
-            let reach = |strip: usize| if is_crossed(strip) { Reach::NOTHING } else { seen(strip) };
-            reaches.extend((0..frame.strips).map(reach));
-            add_edges(simd, cells, edges, top, frame.strips, reaches);
-        }
+    }));
+    exact.resolve(edges, top, crossed, rule);
+    if crossed.contains(&false) {
         reaches.clear();
-        let reach = |strip: usize| if is_crossed(strip) { Reach::EVERYTHING } else { Reach::NOTHING };
-        reaches.extend((0..frame.strips).map(reach));
-        touch::add_touching_edges(simd, cells, listed, top, frame.strips, reaches, &mut touch::Trail::default());
+        let reaches_of = |(strip, crossed): (usize, &bool)| if *crossed { Reach::NOTHING } else { seen(strip) };
+        reaches.extend(crossed.iter().enumerate().map(reaches_of));
+        add_as_they_are(simd, cells, edges, top, frame.strips, rule, reaches);
     }
-    for strip in (0..frame.strips).filter(|strip| crowded || is_crossed(*strip)) {
-        let Some(cells) = cells.strip(strip) else { break };
-        let strip_top = frame.strip_top(strip) << fixed::SHIFT;
-        exact::resolve(simd, cells, listed, strip_top, rule, &mut scratch.exact);
-    }
-    cells.forget();
+    reaches.clear();
+    reaches.extend((0..frame.strips).map(seen));
+    exact.add(simd, cells, top, reaches);
 }
 
-/// Edges side by side, for steps that look at them more than once; with horizontal ones, if asked for.
-fn listed<'a>(list: &'a mut Vec<Edge>, edges: Edges<'_>, horizontal: bool) -> &'a mut Vec<Edge> {
-    list.clear();
-    if horizontal {
-        edges.for_all(|edge| list.push(edge));
+/// Adds edges whose windings the sweep is to read by the rule.
+#[inline(always)]
+fn add_as_they_are<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    edges: Edges<'_>,
+    top: i32,
+    strips: usize,
+    rule: FillRule,
+    reaches: &[Reach],
+) {
+    // Sums by the even-odd rule may wrap around: what is lost is even.
+    if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
+        kernel::add_crowd(simd, cells, edges, top, strips, reaches);
     } else {
-        edges.for_each(|edge| list.push(edge));
+        add_edges(simd, cells, edges, top, strips, reaches);
     }
+}
+
+/// Edges side by side, for steps that look at them more than once.
+fn listed<'a>(list: &'a mut Vec<Edge>, edges: Edges<'_>) -> &'a mut Vec<Edge> {
+    list.clear();
+    edges.for_each(|edge| list.push(edge));
     list
 }
 

@@ -238,43 +238,46 @@ fn a_path_that_is_drawn_again_looks_as_it_did_the_first_time() {
         }
         path
     };
-    let draw = |canvas: &mut Canvas<'_>, path: &Path| {
+    let draw = |canvas: &mut Canvas<'_>, [clip, fill, stroke]: [&Path; 3]| {
         canvas.save();
         canvas.translate(3.25, -2.5);
-        canvas.clip_path(path, FillRule::EvenOdd, Antialias::Analytic);
+        canvas.clip_path(clip, FillRule::EvenOdd, Antialias::Analytic);
         canvas.fill(Color::RED);
         canvas.restore();
-        canvas.fill_path(path, FillRule::EvenOdd, HALF_BLACK);
-        canvas.stroke_path(path, &Stroke::new(1.5), Color::GREEN);
+        canvas.fill_path(fill, FillRule::EvenOdd, HALF_BLACK);
+        canvas.stroke_path(stroke, &Stroke::new(1.5), Color::GREEN);
     };
-    let fresh = |petals: u16| drawn(40, 40, |canvas| draw(canvas, &flower(petals)));
+    // Each path drawn once: nothing is shared.
+    let fresh = |paths: [Path; 3]| drawn(40, 40, |canvas| draw(canvas, paths.each_ref()));
+    let fives = fresh([flower(5), flower(5), flower(5)]);
     let (mut path, mut canvas) = (flower(5), Canvas::new(40, 40).unwrap());
     // Among other paths, at other places in the recording, and after a change.
     for round in 0..5 {
         canvas.clear(Color::TRANSPARENT);
         if round % 2 == 0 {
-            draw(&mut canvas, &flower(3));
+            draw(&mut canvas, [&flower(3); 3]);
             canvas.clear(Color::TRANSPARENT);
         }
-        draw(&mut canvas, &path);
-        assert!(canvas.read_pixels(IntRect::from_xywh(0, 0, 40, 40)).unwrap() == fresh(5), "round {round}");
+        draw(&mut canvas, [&path; 3]);
+        assert!(canvas.read_pixels(IntRect::from_xywh(0, 0, 40, 40)).unwrap() == fives, "round {round}");
     }
     path.extend(&flower(6), Transform::IDENTITY);
-    let longer = drawn(40, 40, |canvas| {
+    let longer = || {
         let mut path = flower(5);
         path.extend(&flower(6), Transform::IDENTITY);
-        draw(canvas, &path);
-    });
+        path
+    };
+    let longer = fresh([longer(), longer(), longer()]);
     for round in 0..3 {
         canvas.clear(Color::TRANSPARENT);
-        draw(&mut canvas, &path);
+        draw(&mut canvas, [&path; 3]);
         assert!(canvas.read_pixels(IntRect::from_xywh(0, 0, 40, 40)).unwrap() == longer, "round {round} of the change");
     }
     // A clip that outlives the recording, by a path that does not outlive the call.
     canvas.clear(Color::TRANSPARENT);
     {
         let path = flower(5);
-        let _ = drawn(40, 40, |other| (0..2).for_each(|_| draw(other, &path)));
+        let _ = drawn(40, 40, |other| draw(other, [&path; 3]));
         canvas.clip_path(&path, FillRule::NonZero, Antialias::Analytic);
     }
     canvas.flush().unwrap();
