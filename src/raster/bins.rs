@@ -5,12 +5,13 @@ use fearless_simd::prelude::*;
 
 use super::cut::Cutter;
 use super::edge::{Edge, FixedPoint};
-use super::kernel::STRIP_SHIFT;
+use super::exact::Resolver;
 use super::simple::{MOST_CORNERS, Simplicity};
 use crate::geom::{FixedRect, IntRect, Point};
 use crate::num::fixed;
 use crate::num::lanes::{max_f32, min_f32, truncate_f32};
 use crate::path::polygons::Polygons;
+use crate::style::FillRule;
 
 /// Outlines that reach further, in pixels, are not asked where they cross.
 const FARTHEST: f32 = 1e6;
@@ -38,12 +39,7 @@ pub(crate) enum Role {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Content {
     /// A shape's edges, if it has any: some of the band's.
-    Edges {
-        start: u32,
-        end: u32,
-        /// Which of the bins' crossed strips are its, if that is known.
-        crossed: Option<(u32, u32)>,
-    },
+    Edges { start: u32, end: u32 },
     /// A rectangle in one colour, drawn over what is there: there is no need to look at the command.
     Rect(FixedRect, [u8; 4]),
 }
@@ -53,7 +49,7 @@ impl BandItem {
     #[inline(always)]
     fn open(command: u32, role: Role, start: usize) -> Self {
         let start = start as u32;
-        Self { command, role, content: Content::Edges { start, end: start, crossed: None } }
+        Self { command, role, content: Content::Edges { start, end: start } }
     }
 }
 
@@ -72,12 +68,11 @@ pub(crate) struct EdgeBins {
     bands: Vec<BandList>,
     /// log2 of a band's height in 1/256 pixel.
     band_shift: u32,
-    /// Where the outlines of the shape in work end, and its corners if they are not among the points.
-    ends: Vec<usize>,
+    /// The corners of a shape that may cross itself, and where its outlines end.
     outline: Vec<FixedPoint>,
+    ends: Vec<usize>,
     simplicity: Simplicity,
-    /// The strips in which shapes cross themselves.
-    crossed: Vec<i32>,
+    resolver: Resolver,
 }
 
 /// The edges of one draw in one band.
@@ -85,24 +80,17 @@ pub(crate) struct EdgeBins {
 pub(crate) struct Edges<'a> {
     points: &'a [FixedPoint],
     starts: &'a [u32],
-    crossed: Option<&'a [i32]>,
 }
 
 impl<'a> Edges<'a> {
     /// Those between each of the points numbered by `starts`, which go up, and the next.
     #[cfg(test)]
     pub(super) fn of(points: &'a [FixedPoint], starts: &'a [u32]) -> Self {
-        Self { points, starts, crossed: None }
+        Self { points, starts }
     }
 }
 
 impl Edges<'_> {
-    /// The band's strips in which the shape crosses itself, numbered from the canvas's top, if that is known: see
-    /// [`simple`](super::simple).
-    pub(crate) fn crossed(&self) -> Option<&[i32]> {
-        self.crossed
-    }
-
     /// How many edges there are; some may be horizontal.
     pub(crate) fn len(self) -> usize {
         self.starts.len()
@@ -111,21 +99,10 @@ impl Edges<'_> {
     /// The edges in the order of their outline. Those that lie along a scanline are left out.
     #[inline(always)]
     pub(crate) fn for_each(self, mut f: impl FnMut(Edge)) {
-        self.for_all(
-            #[inline(always)]
-            |edge| {
-                if edge.y0 != edge.y1 {
-                    f(edge);
-                }
-            },
-        );
-    }
-
-    /// As [`for_each`](Self::for_each), with those that lie along a scanline.
-    #[inline(always)]
-    pub(crate) fn for_all(self, mut f: impl FnMut(Edge)) {
         for start in self.starts {
-            if let Some([from, to]) = self.points.get(*start as usize..).and_then(|rest| rest.first_chunk::<2>()) {
+            if let Some([from, to]) = self.points.get(*start as usize..).and_then(|rest| rest.first_chunk::<2>())
+                && from.y != to.y
+            {
                 f(Edge { x0: from.x, y0: from.y, x1: to.x, y1: to.y });
             }
         }
@@ -167,7 +144,6 @@ impl EdgeBins {
     pub(crate) fn reset(&mut self, bands: usize, height_shift: u32) {
         self.band_shift = height_shift + fixed::SHIFT;
         self.points.clear();
-        self.crossed.clear();
         for band in &mut self.bands {
             band.edges.clear();
             band.items.clear();
@@ -182,10 +158,9 @@ impl EdgeBins {
 
     /// The edges of one of a band's items.
     pub(crate) fn edges<'a>(&'a self, band: &'a BandList, item: BandItem) -> Edges<'a> {
-        let Content::Edges { start, end, crossed } = item.content else { return Edges::default() };
+        let Content::Edges { start, end } = item.content else { return Edges::default() };
         let starts = band.edges.get(start as usize..end as usize).unwrap_or(&[]);
-        let crossed = crossed.and_then(|(start, end)| self.crossed.get(start as usize..end as usize));
-        Edges { points: &self.points, starts, crossed }
+        Edges { points: &self.points, starts }
     }
 
     /// Lists `command`, which has no edges, for every band that `bounds` (device pixels) touches.
@@ -206,7 +181,8 @@ impl EdgeBins {
     }
 
     /// Lists the edges of `polygons` within `clip` (device pixels) as those of a command, for the bands that they touch.
-    /// `open_right` says that no pixel right of `clip` can be drawn, `prove` that it is worth looking where they cross.
+    /// `open_right` says that no pixel right of `clip` can be drawn. By `resolve`, a fill rule, edges that cross are
+    /// replaced by what bounds the inside.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &mut self,
@@ -215,31 +191,44 @@ impl EdgeBins {
         polygons: &Polygons,
         clip: IntRect,
         open_right: bool,
-        prove: bool,
+        resolve: Option<FillRule>,
     ) {
-        let prove = prove && polygons.points().len() <= MOST_CORNERS;
-        match extent(simd, polygons.points()) {
+        let extent = extent(simd, polygons.points());
+        if let Some(rule) = resolve
+            && extent.is_some_and(|extent| extent.iter().all(|v| v.abs() < FARTHEST))
+            && self.resolve(simd, polygons, rule)
+        {
+            self.add_cut((command, role), Outlines::Resolved, clip, open_right);
+            return;
+        }
+        match extent {
             Some([left, top, right, bottom])
                 if left >= clip.left as f32
                     && top >= clip.top as f32
                     && right <= clip.right as f32
                     && bottom <= clip.bottom as f32 =>
             {
-                self.add_inside(simd, (command, role), polygons, fixed::from_f32(top), fixed::from_f32(bottom), prove);
+                self.add_inside(simd, (command, role), polygons, fixed::from_f32(top), fixed::from_f32(bottom));
             }
-            Some(extent) if prove && extent.iter().all(|v| v.abs() < FARTHEST) => {
-                // Before it is cut: what it is must not depend on where.
-                self.outline.clear();
-                self.ends.clear();
-                for polygon in polygons.iter() {
-                    append_closed(simd, polygon, &mut self.outline);
-                    self.ends.push(self.outline.len());
-                }
-                let proof = Proof::new(simd, &mut self.simplicity, &self.outline, &self.ends, &mut self.crossed);
-                self.add_cut((command, role), polygons, clip, open_right, proof);
-            }
-            _ => self.add_cut((command, role), polygons, clip, open_right, Proof::default()),
+            _ => self.add_cut((command, role), Outlines::Polygons(polygons), clip, open_right),
         }
+    }
+
+    /// Whether polygons cross themselves or each other, and what bounds their inside was found. It is, before they are cut, so
+    /// that it does not depend on where.
+    #[inline(never)]
+    fn resolve<S: Simd>(&mut self, simd: S, polygons: &Polygons, rule: FillRule) -> bool {
+        let Self { outline, ends, simplicity, resolver, .. } = self;
+        if polygons.points().len() > MOST_CORNERS {
+            return false;
+        }
+        outline.clear();
+        ends.clear();
+        for polygon in polygons.iter() {
+            append_closed(simd, polygon, outline);
+            ends.push(outline.len());
+        }
+        simplicity.wind_once(simd, outline, ends) == Some(false) && resolver.resolve(outline, simplicity.sides(), rule)
     }
 
     /// Lists polygons that lie between `top` and `bottom` (fixed point) and need no clipping.
@@ -251,7 +240,6 @@ impl EdgeBins {
         polygons: &Polygons,
         top: i32,
         bottom: i32,
-        prove: bool,
     ) {
         if top == bottom || u32::try_from(self.points.len() + 2 * polygons.points().len()).is_err() {
             return;
@@ -262,11 +250,9 @@ impl EdgeBins {
         for band in bands.iter_mut() {
             band.items.push(BandItem::open(command, role, band.edges.len()));
         }
-        self.ends.clear();
         for polygon in polygons.iter() {
             let start = self.points.len();
             append_closed(simd, polygon, &mut self.points);
-            self.ends.push(self.points.len() - first);
             let end = self.points.len() as u32;
             if let [band] = bands {
                 band.edges.extend(start as u32..end.saturating_sub(1));
@@ -274,31 +260,19 @@ impl EdgeBins {
                 list_by_band(bands, &self.points, start, first_band << self.band_shift, self.band_shift);
             }
         }
-        let corners = self.points.get(first..).unwrap_or(&[]);
-        let mut proof = Proof::default();
-        if prove {
-            proof = Proof::new(simd, &mut self.simplicity, corners, &self.ends, &mut self.crossed);
-        }
         let mut empty = true;
-        for (number, band) in (first_band..).zip(bands) {
-            empty &= close_item(band, proof.in_band(&self.crossed, number, self.band_shift));
+        for band in bands {
+            empty &= close_item(band);
         }
         if empty {
             self.points.truncate(first);
         }
     }
 
-    /// Lists polygons that may leave the clip.
+    /// Lists what may leave the clip.
     #[inline(never)]
-    fn add_cut(
-        &mut self,
-        (command, role): (u32, Role),
-        polygons: &Polygons,
-        clip: IntRect,
-        open_right: bool,
-        proof: Proof,
-    ) {
-        let Self { points, bands, band_shift, crossed, .. } = self;
+    fn add_cut(&mut self, (command, role): (u32, Role), outlines: Outlines<'_>, clip: IntRect, open_right: bool) {
+        let Self { points, bands, band_shift, resolver, .. } = self;
         let Some(bands) = touched(bands, clip.top << fixed::SHIFT, clip.bottom << fixed::SHIFT, *band_shift) else {
             return;
         };
@@ -311,9 +285,7 @@ impl EdgeBins {
             open_right,
             #[inline(always)]
             |edge| {
-                // Level edges inside of a strip matter to exact coverage, those between strips to nothing.
-                let matters = edge.y0 != edge.y1 || edge.y0 & ((1 << STRIP_SHIFT) - 1) != 0;
-                if matters && u32::try_from(points.len() + 2).is_ok() {
+                if u32::try_from(points.len() + 2).is_ok() {
                     let (from, to) = (FixedPoint { x: edge.x0, y: edge.y0 }, FixedPoint { x: edge.x1, y: edge.y1 });
                     // Most edges go on where the last one ended.
                     if points.last() != Some(&from) {
@@ -325,9 +297,14 @@ impl EdgeBins {
                 }
             },
         );
-        polygons.iter().for_each(|polygon| cutter.polygon(polygon));
-        for (number, band) in (first_top >> *band_shift..).zip(bands) {
-            close_item(band, proof.in_band(crossed, number, *band_shift));
+        match outlines {
+            Outlines::Polygons(polygons) => polygons.iter().for_each(|polygon| cutter.polygon(polygon)),
+            Outlines::Resolved => {
+                resolver.pieces().iter().for_each(|[from, to]| cutter.edge((from.x, from.y), (to.x, to.y)));
+            }
+        }
+        for band in bands {
+            close_item(band);
         }
     }
 
@@ -336,36 +313,12 @@ impl EdgeBins {
     }
 }
 
-/// Which of the bins' crossed strips belong to the shape in work; unknown by default.
-#[derive(Clone, Copy, Debug, Default)]
-struct Proof(Option<(usize, usize)>);
-
-impl Proof {
-    /// Looks where outlines cross, and lists the strips.
-    fn new<S: Simd>(
-        simd: S,
-        simplicity: &mut Simplicity,
-        points: &[FixedPoint],
-        ends: &[usize],
-        crossed: &mut Vec<i32>,
-    ) -> Self {
-        let start = crossed.len();
-        Self(simplicity.crossed_strips(simd, points, ends).map(|strips| {
-            crossed.extend_from_slice(strips);
-            (start, crossed.len())
-        }))
-    }
-
-    /// Those of band `number`.
-    #[inline(always)]
-    fn in_band(self, crossed: &[i32], number: i32, band_shift: u32) -> Option<(u32, u32)> {
-        let (start, end) = self.0?;
-        let first = number << (band_shift - STRIP_SHIFT);
-        let last = first + (1 << (band_shift - STRIP_SHIFT));
-        let strips = crossed.get(start..end).unwrap_or(&[]);
-        let place = |strip: i32| (start + strips.partition_point(|other| *other < strip)) as u32;
-        Some((place(first), place(last)))
-    }
+/// What is to be cut.
+#[derive(Clone, Copy)]
+enum Outlines<'a> {
+    Polygons(&'a Polygons),
+    /// The pieces in the resolver.
+    Resolved,
 }
 
 /// The bands between `top` and `bottom` (fixed point).
@@ -379,16 +332,14 @@ fn touched(bands: &mut [BandList], top: i32, bottom: i32, band_shift: u32) -> Op
     bands.get_mut((top >> band_shift) as usize..last)
 }
 
-/// Ends the band's last item, whose shape crosses itself in the strips `crossed`, if that is known; drops it if it has no edges, and says whether it has none.
+/// Ends the band's last item; drops it if it has no edges, and says whether it has none.
 #[inline(always)]
-fn close_item(band: &mut BandList, crossed: Option<(u32, u32)>) -> bool {
+fn close_item(band: &mut BandList) -> bool {
     let end = band.edges.len() as u32;
-    let Some(BandItem { content: Content::Edges { start, end: item_end, crossed: item_crossed }, .. }) =
-        band.items.last_mut()
-    else {
+    let Some(BandItem { content: Content::Edges { start, end: item_end }, .. }) = band.items.last_mut() else {
         return true;
     };
-    (*item_end, *item_crossed) = (end, crossed);
+    *item_end = end;
     let empty = *start == end;
     if empty {
         band.items.pop();
@@ -506,7 +457,7 @@ mod tests {
         polygons.end();
         let mut bins = EdgeBins::default();
         bins.reset(bands, height_shift);
-        dispatch!(SimdLevel::best(), simd => bins.add(simd, (7, Role::Plain), &polygons, clip, open_right, false));
+        dispatch!(SimdLevel::best(), simd => bins.add(simd, (7, Role::Plain), &polygons, clip, open_right, None));
         bins
     }
 

@@ -47,12 +47,8 @@ impl<F: FnMut(Edge)> Cutter<F> {
 
     /// An edge between two points in fixed point, each within 2^28 of the origin.
     #[inline(always)]
-    fn edge(&mut self, (x0, y0): (i32, i32), (x1, y1): (i32, i32)) {
+    pub(super) fn edge(&mut self, (x0, y0): (i32, i32), (x1, y1): (i32, i32)) {
         if y0 == y1 {
-            if y0 >= self.y_min && y0 < self.y_max {
-                let (x0, x1) = (x0.clamp(self.x_min, self.x_max), x1.clamp(self.x_min, self.x_max));
-                (self.list)(Edge { x0, y0, x1, y1 });
-            }
             return;
         }
         let outside = |v: i32, low: i32, high: i32| v < low || v > high;

@@ -1,405 +1,293 @@
 //! Exact coverage where outlines cross.
 //!
-//! Sums of areas are coverage as long as windings are 0 and 1. In a strip where they are not, edges are cut where they
-//! cross each other, and of the pieces only those are added that have the inside on one side and the outside on the other,
-//! each winding so that what is inside is wound around once:
+//! Sums of areas are coverage as long as windings are 0 and 1. Where they are not, edges are cut where they cross each
+//! other, and of the pieces those are kept that have the inside on one side and the outside on the other, each going the
+//! way that winds around the inside once. What is then drawn are edges as any others.
 //!
-//! 1. Edges whose columns overlap, and theirs, are a *group* ([`Resolver::groups`]). No edge comes between two groups, so that the winding
-//!    there is the same in all of the strip's rows.
-//! 2. A group is walked from top to bottom, from one y at which an edge starts, ends or crosses another to the next: between two of
-//!    them (a *scanbeam*, after Vatti, *A generic solution to polygon clipping*, 1992) edges have an order from left to
-//!    right, and by the windings between them the fill rule says of each whether it bounds the inside ([`Walk::count`]).
-//! 3. What an edge bounds from one change to the next is a piece, and added as any edge is ([`kernel`](super::kernel)).
+//! Outlines are swept from top to bottom, from one height at which an edge starts, ends or crosses another to the next. Between
+//! two of them (a *scanbeam*, after Vatti, *A generic solution to polygon clipping*, 1992) edges have an order from left to right;
+//! by the windings between them the fill rule says of each whether it bounds the inside. At a height only those
+//! are looked at that something happens to, and their neighbours.
 //!
-//! Crossings are rounded to 1/256 pixel, as corners are. The order is that in the middle between two such heights, so
-//! that windings always add up: what rounding changes is some 2^-17 of a pixel, never a row.
+//! Crossings are rounded to 1/256 pixel, as corners are. The order is that in the middle between two such heights, and windings
+//! are counted along it, so that they always add up: what rounding may change is some 2^-17 of a pixel, never a row.
 
-use fearless_simd::Simd;
-
-use super::bins::Edges;
-use super::cell::Accumulator;
-use super::edge::{Edge, FineLine};
-use super::kernel::{Reach, STRIP_SHIFT, Slant, add_strip_part};
-use crate::num::fixed;
+use super::edge::FixedPoint;
+use super::simple::Side;
+use crate::num::lanes::round_f64;
 use crate::style::FillRule;
 
-/// So many looks at edges in one strip are too many: areas stay as they are summed. At such density, which of them are
-/// inside no longer shows, and a strip's cost stays within bounds.
-const MOST_LOOKS: usize = 1 << 20;
+/// After so many looks at edges in all, and so many for each corner, outlines stay as they are: at such density, what
+/// is inside of them no longer shows.
+const LOOKS: usize = 1 << 20;
+const LOOKS_PER_CORNER: usize = 256;
 
-/// Pieces that bound the inside of a shape, and working memory.
+/// Where nothing happens.
+const NEVER: i32 = i32::MAX;
+
+/// Working memory, and the pieces of the shape in work.
 #[derive(Debug, Default)]
-pub(crate) struct Resolver {
-    /// The edges of each strip.
-    strips: Vec<Vec<Line>>,
-    pieces: Vec<Piece>,
-    /// The lines of the strip in work by where they start: from the left, then, of a group, from the top.
-    order: Vec<u64>,
+pub(super) struct Resolver {
+    /// From left to right.
     active: Vec<Active>,
+    /// The height at which each of them ends or crosses the next one.
+    next: Vec<i32>,
+    /// Where each piece starts and ends.
+    pieces: Vec<[FixedPoint; 2]>,
 }
 
-/// An edge in one strip. Heights in 1/256 pixel from the strip's top, x in 20.12 fixed point.
+/// An edge that the scanbeam in work crosses. Heights and x in 1/256 pixel.
 #[derive(Clone, Copy, Debug)]
-struct Line {
-    x: FineLine,
-    /// Where the edge starts, which may be above the strip.
-    start: i32,
-    /// Where it ends, which may be below.
-    end: (i32, i32),
-    /// What of it lies in the strip; the same where it is level.
-    top: i32,
-    bottom: i32,
+struct Active {
+    /// The edge, and how to go on from it.
+    side: Side,
+    /// The change of x per unit of y.
+    slope: f64,
+    winding: i32,
+    /// The winding left of it.
     left: i32,
-    right: i32,
-    slant: Slant,
-    /// How it winds around the inside from `since` on: 1 or -1, or 0 where it does not bound it.
+    /// How it winds around the inside from the height `since` on: 1 or -1, or 0 where it does not bound it.
     bounds: i32,
     since: i32,
 }
 
-/// A line that the scanbeam in work crosses.
+/// The active edges to which something happens: all from the first to the last.
 #[derive(Clone, Copy, Debug)]
-struct Active {
-    /// x in 1/4096 pixel, just below the scanbeam's top.
-    x: f64,
-    line: u32,
+struct Touched {
+    first: usize,
+    last: usize,
 }
 
-/// A piece of an edge in one strip: where it starts and ends, x in 20.12 and y in 24.8 fixed point.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    strip: u32,
-    start: (i32, i32),
-    end: (i32, i32),
-    slant: Slant,
+impl Touched {
+    #[inline(always)]
+    fn add(&mut self, index: usize) {
+        self.first = self.first.min(index);
+        self.last = self.last.max(index);
+    }
 }
 
-impl Line {
-    /// x between two heights: `half` is twice the one below.
+impl Active {
     #[inline(always)]
-    fn x_within(&self, half: i32) -> f64 {
-        self.x.x + self.x.slope * (0.5 * f64::from(half - 2 * self.start))
+    fn new(side: Side) -> Self {
+        let winding = if side.forwards { 1 } else { -1 };
+        Self { side, slope: slope(side), winding, left: 0, bounds: 0, since: side.from.y }
     }
 
-    /// x at a height within the strip.
+    /// x at half of a height.
     #[inline(always)]
-    fn x_at(&self, y: i32) -> i32 {
-        if y == self.end.1 { self.end.0 } else { self.x.x_at(y - self.start) }
+    fn x_at(&self, half: i32) -> f64 {
+        f64::from(self.side.from.x) + self.slope * (0.5 * f64::from(half - 2 * self.side.from.y))
     }
+
+    /// The point at a height.
+    #[inline(always)]
+    fn point(&self, y: i32) -> FixedPoint {
+        if y == self.side.to.y { self.side.to } else { FixedPoint { x: round_f64(self.x_at(2 * y)), y } }
+    }
+
+    /// Ends the piece in work at `y`.
+    #[inline(always)]
+    fn finish(&mut self, y: i32, pieces: &mut Vec<[FixedPoint; 2]>) {
+        if self.bounds != 0 && self.since < y {
+            let (start, end) = (self.point(self.since), self.point(y));
+            pieces.push(if self.bounds > 0 { [start, end] } else { [end, start] });
+        }
+        self.since = y;
+    }
+
+    /// Goes on to the edge below; false where there is none.
+    #[inline(always)]
+    fn advance(&mut self, points: &[FixedPoint]) -> bool {
+        let more = self.side.advance(points);
+        if more {
+            self.slope = slope(self.side);
+        }
+        more
+    }
+
+    /// Where this edge crosses one that is right of it just below `y`; at least 1/256 pixel further down.
+    #[inline(always)]
+    fn crossing(&self, other: &Self, y: i32) -> i32 {
+        let bottom = self.side.to.y.min(other.side.to.y);
+        let rightmost = self.side.from.x.max(self.side.to.x);
+        let leftmost = other.side.from.x.min(other.side.to.x);
+        if rightmost <= leftmost || bottom - y < 2 {
+            return NEVER;
+        }
+        let overlap = self.x_at(2 * bottom - 1) - other.x_at(2 * bottom - 1);
+        if overlap <= 0.0 {
+            return NEVER;
+        }
+        let gap = other.x_at(2 * y + 1) - self.x_at(2 * y + 1);
+        y + 1 + (f64::from(bottom - y - 1) * (gap / (gap + overlap))) as i32
+    }
+}
+
+#[inline(always)]
+fn slope(side: Side) -> f64 {
+    f64::from(side.to.x - side.from.x) / f64::from(side.to.y - side.from.y)
 }
 
 impl Resolver {
-    /// Finds the pieces that bound what of a shape lies in the strips below `top` (fixed point) that are `wanted`. A strip in
-    /// which there are too many gets none, and is not wanted any more. `edges` are with the level ones.
-    pub(crate) fn resolve(&mut self, edges: Edges<'_>, top: i32, wanted: &mut [bool], rule: FillRule) {
-        self.pieces.clear();
-        self.strips.resize_with(wanted.len().max(self.strips.len()), Vec::new);
-        self.strips.iter_mut().for_each(Vec::clear);
-        edges.for_all(
-            #[inline(always)]
-            |edge| list(&mut self.strips, edge, top, wanted),
-        );
-        for (strip, wanted) in wanted.iter_mut().enumerate() {
-            let before = self.pieces.len();
-            *wanted &= match rule {
-                FillRule::NonZero => self.walk::<false>(strip, top),
-                FillRule::EvenOdd => self.walk::<true>(strip, top),
-            };
-            if !*wanted {
-                self.pieces.truncate(before);
-            }
-        }
+    /// Finds the pieces that bound the inside of a shape. `sides` are those of its outlines, whose corners are `points`, in the
+    /// order of their tops. False where sums of areas are coverage, or where it takes too long to find out.
+    pub(super) fn resolve(&mut self, points: &[FixedPoint], sides: &[Side], rule: FillRule) -> bool {
+        let found = match rule {
+            FillRule::NonZero => self.sweep::<false>(points, sides),
+            FillRule::EvenOdd => self.sweep::<true>(points, sides),
+        };
+        found.unwrap_or(false)
     }
 
-    /// Adds the pieces.
-    #[inline(always)]
-    pub(crate) fn add<S: Simd>(&self, simd: S, cells: &mut Accumulator, top: i32, reaches: &[Reach]) {
-        for Piece { strip, start, end, slant } in &self.pieces {
-            add_strip_part(simd, cells, *strip as usize, *start, *end, *slant, top, reaches);
-        }
+    /// The pieces: from where to where each goes.
+    pub(super) fn pieces(&self) -> &[[FixedPoint; 2]] {
+        &self.pieces
     }
 
-    /// Walks the groups of a strip; false if that takes too long.
-    fn walk<const EVEN_ODD: bool>(&mut self, strip: usize, top: i32) -> bool {
-        let Self { strips, pieces, order, active } = self;
-        let Some(lines) = strips.get_mut(strip) else { return true };
-        order.clear();
-        order.extend((0..).zip(&*lines).map(|(index, line)| entry(line.left, index)));
-        order.sort_unstable();
-        let highest = lines.iter().fold(i32::MAX, |highest, line| lesser(highest, line.top));
-        let top = top + ((strip as i32) << STRIP_SHIFT);
-        let mut walk = Walk { lines, pieces, active, strip: strip as u32, top, looks: 0 };
-        let (mut rest, mut winding) = (&mut order[..], 0);
-        while let [first, more @ ..] = &*rest {
-            let Some(line) = walk.line(*first) else { break };
-            // Below the top of what the shape has in the strip, the winding between groups is the same everywhere.
-            let change =
-                |line: &Line| if line.top == highest && line.bottom > highest { line.slant.winding } else { 0 };
-            let (mut reach, mut next) = (line.right, winding + change(line));
-            let more = more.iter().map_while(|entry| {
-                let line = walk.line(*entry)?;
-                (line.left <= reach).then(|| {
-                    reach = greater(reach, line.right);
-                    next += change(line);
-                })
-            });
-            let count = 1 + more.count();
-            let Some((group, others)) = std::mem::take(&mut rest).split_at_mut_checked(count) else { break };
-            match group {
-                [only] => walk.lone::<EVEN_ODD>(*only, winding),
-                _ => walk.group::<EVEN_ODD>(group, winding),
-            }
-            if walk.looks > MOST_LOOKS {
-                return false;
-            }
-            (rest, winding) = (others, next);
-        }
-        true
-    }
-}
-
-/// A walk through the lines of one strip.
-struct Walk<'a> {
-    lines: &'a mut [Line],
-    pieces: &'a mut Vec<Piece>,
-    active: &'a mut Vec<Active>,
-    strip: u32,
-    /// The strip's top in fixed point.
-    top: i32,
-    looks: usize,
-}
-
-impl Walk<'_> {
-    /// The line that an entry names.
-    #[inline(always)]
-    fn line(&self, entry: u64) -> Option<&Line> {
-        self.lines.get(entry as u32 as usize)
-    }
-
-    /// Finds the piece of a line that is a group by itself, left of which the winding is `winding`.
-    #[inline(always)]
-    fn lone<const EVEN_ODD: bool>(&mut self, entry: u64, winding: i32) {
-        let Self { lines, pieces, strip, top, .. } = self;
-        if let Some(line) = lines.get_mut(entry as u32 as usize)
-            && line.bottom > line.top
-        {
-            line.bounds = inside::<EVEN_ODD>(winding + line.slant.winding) - inside::<EVEN_ODD>(winding);
-            finish(line, line.bottom, *strip, *top, pieces);
-        }
-    }
-
-    /// Finds the pieces of a group, left of which the winding is `winding`. Puts it in another order.
-    fn group<const EVEN_ODD: bool>(&mut self, group: &mut [u64], winding: i32) {
-        for place in group.iter_mut() {
-            if let Some(line) = self.line(*place) {
-                *place = entry(line.top, *place as u32);
-            }
-        }
-        group.sort_unstable();
-        let mut pending = &*group;
+    /// Whether edges had to be cut, left out or turned round; `None` where that takes too long.
+    #[inline(never)]
+    fn sweep<const EVEN_ODD: bool>(&mut self, points: &[FixedPoint], sides: &[Side]) -> Option<bool> {
         self.active.clear();
-        while let [first, ..] = pending {
-            let mut y = place_of(*first);
-            loop {
-                while let [first, rest @ ..] = pending
-                    && place_of(*first) == y
+        self.next.clear();
+        self.pieces.clear();
+        let mut coming = sides;
+        let mut looks = LOOKS + LOOKS_PER_CORNER * points.len();
+        // Whether all edges bound the inside as they are, or all the other way round.
+        let (mut same, mut reversed) = (true, true);
+        loop {
+            let start = coming.first().map_or(NEVER, |side| side.from.y);
+            let event = self.next.iter().fold(NEVER, |first, next| first.min(*next));
+            let y = start.min(event);
+            if y == NEVER {
+                break;
+            }
+            let mut touched = Touched { first: usize::MAX, last: 0 };
+            if event == y {
+                self.go_on(points, y, &mut touched);
+                self.arrange(y, &mut touched);
+            }
+            while let [side, rest @ ..] = coming
+                && side.from.y == y
+            {
+                self.insert(*side, &mut touched);
+                coming = rest;
+            }
+            self.look_ahead(y, touched);
+            self.apply::<EVEN_ODD>(y, touched, &mut same, &mut reversed);
+            looks = looks.checked_sub(4 + touched.last - touched.first + self.active.len() / 8)?;
+        }
+        Some(!same && !reversed)
+    }
+
+    /// Goes on from edges that end at `y`.
+    #[inline(always)]
+    fn go_on(&mut self, points: &[FixedPoint], y: i32, touched: &mut Touched) {
+        let Self { active, next, pieces } = self;
+        let mut index = 0;
+        while let Some(event) = next.get(index) {
+            if *event == y {
+                touched.add(index);
+                if let Some(edge) = active.get_mut(index)
+                    && edge.side.to.y == y
                 {
-                    if self.line(*first).is_some_and(|line| line.bottom > y) {
-                        self.active.push(Active { x: 0.0, line: *first as u32 });
+                    edge.finish(y, pieces);
+                    if !edge.advance(points) {
+                        active.remove(index);
+                        next.remove(index);
+                        touched.add(index.saturating_sub(1));
+                        continue;
                     }
-                    pending = rest;
-                }
-                if self.active.is_empty() {
-                    break;
-                }
-                let start = pending.first().map_or(i32::MAX, |first| place_of(*first));
-                let (end, crossing) = self.arrange(y, start);
-                self.apply::<EVEN_ODD>(y, winding);
-                self.looks += self.active.len();
-                if self.looks > MOST_LOOKS {
-                    return;
-                }
-                y = lesser(lesser(start, end), crossing);
-                if y == end {
-                    self.retire(y);
+                } else {
+                    touched.add(index + 1);
                 }
             }
+            index += 1;
         }
     }
 
-    /// Puts the lines in their order just below `y`, and says where the first one ends, and where the first two cross each
-    /// other, if that is above `start` and that end.
+    /// Puts the touched edges in their order just below `y`.
     #[inline(always)]
-    fn arrange(&mut self, y: i32, start: i32) -> (i32, i32) {
-        let Self { lines, active, .. } = self;
-        let mut end = i32::MAX;
-        let mut sorted = f64::MIN;
-        for index in 0..active.len() {
-            let (done, rest) = active.split_at_mut(index);
-            let Some(moved) = rest.first_mut() else { break };
-            let Some(line) = lines.get(moved.line as usize) else { break };
-            end = lesser(end, line.bottom);
-            moved.x = line.x_within(2 * y + 1);
-            if moved.x >= sorted {
-                sorted = moved.x;
-                continue;
-            }
-            // It goes to where those left of it are not right of it.
-            let moved = *moved;
-            let place = done.iter().rposition(|other| other.x <= moved.x).map_or(0, |place| place + 1);
-            if let Some(part) = active.get_mut(place..=index) {
-                part.rotate_right(1);
-            }
-        }
-        let bottom = lesser(start, end);
-        let mut crossing = bottom;
-        if bottom - y >= 2 {
-            // The first two that cross each other are neighbours.
-            let height = f64::from(bottom - y - 1);
-            let mut before = (f64::MIN, f64::MIN);
-            for active in &**active {
-                let Some(line) = lines.get(active.line as usize) else { break };
-                let (x, low) = (active.x, line.x_within(2 * bottom - 1));
-                if low < before.1 {
-                    let (gap, overlap) = (x - before.0, before.1 - low);
-                    crossing = lesser(crossing, (f64::from(y + 1) + height * (gap / (gap + overlap))) as i32);
+    fn arrange(&mut self, y: i32, touched: &mut Touched) {
+        let half = 2 * y + 1;
+        let mut index = touched.first.max(1);
+        while let (Some(before), Some(edge)) = (self.active.get(index - 1), self.active.get(index)) {
+            let x = edge.x_at(half);
+            if before.x_at(half) > x {
+                let place = self.active.get(..index - 1).unwrap_or(&[]).iter().rposition(|other| other.x_at(half) <= x);
+                let place = place.map_or(0, |place| place + 1);
+                if let Some(part) = self.active.get_mut(place..=index) {
+                    part.rotate_right(1);
                 }
-                before = (x, low);
+                touched.add(place);
+                touched.add(index);
+            } else if index > touched.last {
+                break;
             }
+            index += 1;
         }
-        (end, crossing)
     }
 
-    /// Applies the fill rule to the windings between the lines from `y` on.
+    /// Puts an edge that starts among those that are in order.
     #[inline(always)]
-    fn apply<const EVEN_ODD: bool>(&mut self, y: i32, mut winding: i32) {
-        let Self { lines, active, pieces, strip, top, .. } = self;
-        let mut left = inside::<EVEN_ODD>(winding);
-        for active in &**active {
-            let Some(line) = lines.get_mut(active.line as usize) else { break };
-            winding += line.slant.winding;
-            let right = inside::<EVEN_ODD>(winding);
-            let bounds = right - left;
-            left = right;
-            if bounds != line.bounds {
-                finish(line, y, *strip, *top, pieces);
-                (line.bounds, line.since) = (bounds, y);
-            }
+    fn insert(&mut self, side: Side, touched: &mut Touched) {
+        let edge = Active::new(side);
+        let half = 2 * side.from.y + 1;
+        let x = edge.x_at(half);
+        let place = self.active.partition_point(|other| other.x_at(half) <= x);
+        self.active.insert(place, edge);
+        self.next.insert(place, NEVER);
+        if place <= touched.last {
+            touched.last += 1;
         }
+        touched.add(place);
     }
 
-    /// Ends the lines that end at `y`.
+    /// Finds what happens next to the touched edges and the one left of them.
     #[inline(always)]
-    fn retire(&mut self, y: i32) {
-        let Self { lines, active, pieces, strip, top, .. } = self;
-        active.retain(
-            #[inline(always)]
-            |active| {
-                let Some(line) = lines.get(active.line as usize) else { return false };
-                let ends = line.bottom == y;
-                if ends {
-                    finish(line, y, *strip, *top, pieces);
-                }
-                !ends
-            },
-        );
-    }
-}
-
-/// 1 if what winds so is inside, or else 0.
-#[inline(always)]
-fn inside<const EVEN_ODD: bool>(winding: i32) -> i32 {
-    if EVEN_ODD { winding & 1 } else { (winding != 0) as i32 }
-}
-
-/// Lists the piece of a line that ends at `y`, if it bounds anything.
-#[inline(always)]
-fn finish(line: &Line, y: i32, strip: u32, top: i32, pieces: &mut Vec<Piece>) {
-    if line.bounds != 0 {
-        let slant = if line.bounds == line.slant.winding { line.slant } else { line.slant.reversed() };
-        // Mostly it is all of the line.
-        let (from, to) = if line.x.slope < 0.0 { (line.right, line.left) } else { (line.left, line.right) };
-        let from = if line.since == line.top { from } else { line.x_at(line.since) };
-        let to = if y == line.bottom { to } else { line.x_at(y) };
-        pieces.push(Piece { strip, start: (from, top + line.since), end: (to, top + y), slant });
-    }
-}
-
-/// Lists an edge in the wanted strips that it crosses.
-#[inline(always)]
-fn list(strips: &mut [Vec<Line>], edge: Edge, top: i32, wanted: &[bool]) {
-    const HEIGHT: i32 = 1 << STRIP_SHIFT;
-    const FINER: u32 = FineLine::SHIFT - fixed::SHIFT;
-    let (x0, y0, x1, y1, winding) = edge.downward();
-    let (y0, y1) = (y0 - top, y1 - top);
-    let level = y0 == y1;
-    // A level one at a strip's top is not in it.
-    let first = if y0 > 0 { y0 >> STRIP_SHIFT } else { 0 };
-    let last = (y1 - 1) >> STRIP_SHIFT;
-    let wanted = wanted.get(first as usize..).unwrap_or(&[]);
-    let mut line: Option<Line> = None;
-    for (strip, wanted) in (first..=last).zip(wanted) {
-        let Some(lines) = strips.get_mut(strip as usize).filter(|_| *wanted) else { continue };
-        let above = strip * HEIGHT;
-        let mut here = *line.get_or_insert_with(|| {
-            let (x, slant) = if level {
-                (FineLine { x: 0.0, slope: 0.0 }, Slant { slope: 0.0, steep: 0.0, winding })
-            } else {
-                (FineLine::new(x0, x1, y1 - y0), Slant::new((x0, y0, x1, y1, winding)))
-            };
-            let (left, right) = if x0 < x1 { (x0, x1) } else { (x1, x0) };
-            Line {
-                x,
-                slant,
-                start: 0,
-                end: (0, 0),
-                top: 0,
-                bottom: 0,
-                left: left << FINER,
-                right: right << FINER,
-                bounds: 0,
-                since: 0,
-            }
-        });
-        (here.start, here.end) = (y0 - above, (x1 << FINER, y1 - above));
-        here.top = greater(here.start, 0);
-        here.bottom = lesser(here.end.1, HEIGHT);
-        if !level {
-            let (from, to) = (if here.start >= 0 { x0 << FINER } else { here.x_at(0) }, here.x_at(here.bottom));
-            (here.left, here.right) = if from < to { (from, to) } else { (to, from) };
+    fn look_ahead(&mut self, y: i32, touched: Touched) {
+        let first = touched.first.saturating_sub(1);
+        let (edges, nexts) = (self.active.get(first..).unwrap_or(&[]), self.next.get_mut(first..).unwrap_or(&mut []));
+        for (index, next) in nexts.iter_mut().enumerate().take(touched.last + 1 - first) {
+            let Some(edge) = edges.get(index) else { break };
+            let crossing = edges.get(index + 1).map_or(NEVER, |other| edge.crossing(other, y));
+            *next = edge.side.to.y.min(crossing);
         }
-        here.since = here.top;
-        lines.push(here);
     }
-}
 
-/// What sorts by a place, and names a line.
-#[inline(always)]
-fn entry(place: i32, index: u32) -> u64 {
-    u64::from(place.cast_unsigned() ^ 1 << 31) << 32 | u64::from(index)
-}
-
-#[inline(always)]
-fn place_of(entry: u64) -> i32 {
-    ((entry >> 32) as u32 ^ 1 << 31).cast_signed()
-}
-
-#[inline(always)]
-fn lesser(a: i32, b: i32) -> i32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn greater(a: i32, b: i32) -> i32 {
-    if a > b { a } else { b }
+    /// Applies the fill rule to the windings between the edges from `y` on.
+    #[inline(always)]
+    fn apply<const EVEN_ODD: bool>(&mut self, y: i32, touched: Touched, same: &mut bool, reversed: &mut bool) {
+        let is_inside = |winding: i32| if EVEN_ODD { winding & 1 } else { (winding != 0) as i32 };
+        let before = touched.first.checked_sub(1).and_then(|index| self.active.get(index));
+        let mut winding = before.map_or(0, |edge| edge.left + edge.winding);
+        let mut inside = is_inside(winding);
+        for (index, edge) in self.active.iter_mut().enumerate().skip(touched.first) {
+            if index > touched.last && edge.left == winding {
+                break;
+            }
+            edge.left = winding;
+            winding += edge.winding;
+            let right = is_inside(winding);
+            let bounds = right - inside;
+            inside = right;
+            *same &= bounds == edge.winding;
+            *reversed &= bounds == -edge.winding;
+            if bounds != edge.bounds {
+                edge.finish(y, &mut self.pieces);
+                edge.bounds = bounds;
+            }
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::num::level::{SimdLevel, dispatch};
-    use crate::raster::cell::FULL;
-    use crate::raster::edge::FixedPoint;
+    use crate::raster::batch::add_edges;
+    use crate::raster::bins::Edges;
+    use crate::raster::cell::{Accumulator, FULL};
+    use crate::raster::simple::Simplicity;
 
     const WIDTH: usize = 64;
 
@@ -448,28 +336,43 @@ mod tests {
         covered
     }
 
-    /// The same by pieces.
-    fn resolved(level: SimdLevel, outlines: &[Vec<FixedPoint>], rule: FillRule) -> Vec<f64> {
+    /// The pieces that bound outlines.
+    fn pieces_of(outlines: &[Vec<FixedPoint>], rule: FillRule) -> Option<Vec<FixedPoint>> {
         let points: Vec<FixedPoint> = outlines.concat();
+        let ends = outlines.iter().scan(0, |end, outline| {
+            *end += outline.len();
+            Some(*end)
+        });
+        let ends: Vec<usize> = ends.collect();
+        let mut simplicity = Simplicity::default();
+        assert_ne!(simplicity.sweep_outlines(&points, &ends), None);
+        let mut resolver = Resolver::default();
+        resolver.resolve(&points, simplicity.sides(), rule).then(|| resolver.pieces().concat())
+    }
+
+    /// How much of each pixel is inside by summed areas of the pieces.
+    fn resolved(level: SimdLevel, outlines: &[Vec<FixedPoint>], rule: FillRule) -> Vec<f64> {
+        let mut points: Vec<FixedPoint> = outlines.concat();
         let mut starts = Vec::new();
         let mut first = 0;
         for outline in outlines {
             starts.extend(first..first + outline.len() as u32 - 1);
             first += outline.len() as u32;
         }
+        if let Some(pieces) = pieces_of(outlines, rule) {
+            starts = (0..pieces.len() as u32).step_by(2).collect();
+            points = pieces;
+        }
         let mut cells = Accumulator::default();
         cells.resize(WIDTH, 2);
-        let mut resolver = Resolver::default();
-        let mut wanted = [true; 2];
-        resolver.resolve(Edges::of(&points, &starts), 0, &mut wanted, rule);
-        assert_eq!(wanted, [true; 2]);
-        dispatch!(level, simd => resolver.add(simd, &mut cells, 0, &[]));
+        dispatch!(level, simd => add_edges(simd, &mut cells, Edges::of(&points, &starts), 0, 2, &[]));
         let mut covered = Vec::new();
         for row in 0..16 {
             let mut sum = 0;
             for column in &cells.strip(row / 8).unwrap().columns[..WIDTH] {
                 sum += column.0[row % 8];
-                covered.push(f64::from(sum) / f64::from(FULL));
+                // Outlines that are drawn as they are may all go the other way.
+                covered.push((f64::from(sum) / f64::from(FULL)).abs());
             }
         }
         covered
@@ -531,14 +434,26 @@ mod tests {
     }
 
     #[test]
-    fn too_many_edges_are_given_up() {
+    fn outlines_whose_areas_are_coverage_stay_as_they_are() {
+        let frame = |left, top, right, bottom| closed([(left, top), (right, top), (right, bottom), (left, bottom)]);
+        for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+            assert_eq!(pieces_of(&[frame(300, 700, 9000, 3000)], rule), None);
+            assert_eq!(pieces_of(&[frame(9000, 700, 300, 3000)], rule), None);
+            assert_eq!(pieces_of(&[frame(300, 700, 9000, 3000), frame(8000, 1000, 900, 2600)], rule), None);
+        }
+        // Of one in another, by the nonzero rule, the outer is left; of two that overlap, what is inside goes.
+        let nested = pieces_of(&[frame(300, 700, 9000, 3000), frame(900, 1000, 8000, 2600)], FillRule::NonZero);
+        assert_eq!(nested.map(|pieces| pieces.len()), Some(4));
+        let overlapping = pieces_of(&[frame(0, 0, 512, 1024), frame(256, 512, 768, 2048)], FillRule::NonZero).unwrap();
+        let mut upright: Vec<_> = overlapping.as_chunks::<2>().0.iter().map(|[a, b]| (a.x, a.y, b.y)).collect();
+        upright.sort_unstable();
+        assert_eq!(upright, [(0, 0, 1024), (256, 1024, 2048), (512, 512, 0), (768, 2048, 512)]);
+    }
+
+    #[test]
+    fn what_is_too_dense_stays_as_it_is() {
         let mut random = Random(3);
-        let outline = closed((0..4000).map(|_| (random.below(60 * 256), random.below(8 * 256))));
-        let starts: Vec<u32> = (0..outline.len() as u32 - 1).collect();
-        let mut resolver = Resolver::default();
-        let mut wanted = [true, true];
-        resolver.resolve(Edges::of(&outline, &starts), 0, &mut wanted, FillRule::NonZero);
-        assert_eq!(wanted, [false, true], "the second strip has nothing to give up");
-        assert!(resolver.pieces.is_empty());
+        let outline = closed((0..8000).map(|_| (random.below(60 * 256), random.below(16 * 256))));
+        assert_eq!(pieces_of(&[outline], FillRule::NonZero), None);
     }
 }

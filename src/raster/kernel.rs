@@ -73,7 +73,6 @@ impl Reach {
     }
 
     pub(crate) const NOTHING: Self = Self { low: i32::MIN, high: i32::MIN };
-    pub(crate) const EVERYTHING: Self = Self { low: i32::MIN, high: i32::MAX };
 
     /// The columns `first..end`.
     pub(crate) fn columns(first: usize, end: usize) -> Self {
@@ -214,7 +213,7 @@ pub(super) fn add_row_parts<S: Simd>(simd: S, cells: &mut Strip, row: RowParts<S
 }
 
 /// The direction of an edge, which is that of its pieces in all strips.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(super) struct Slant {
     /// The change of x per unit of y.
     pub(super) slope: f32,
@@ -235,12 +234,6 @@ impl Slant {
             steep: if run == 0.0 { 0.0 } else { rise * winding as f32 / run.abs() },
             winding,
         }
-    }
-
-    /// That of an edge that winds the other way.
-    #[inline(always)]
-    pub(super) fn reversed(self) -> Self {
-        Self { steep: -self.steep, winding: -self.winding, ..self }
     }
 
     fn upright(self) -> Self {

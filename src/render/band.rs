@@ -26,7 +26,6 @@ use crate::paint::PreparedPaint;
 use crate::raster::bins::{Content, Edges};
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
-use crate::raster::exact::Resolver;
 use crate::raster::kernel::Reach;
 use crate::raster::sample::SampleScratch;
 use crate::style::Antialias;
@@ -42,9 +41,6 @@ pub(super) struct BandScratch {
     pub(super) user: Option<std::thread::ThreadId>,
     pub(super) cells: Accumulator,
     pub(super) edges: Vec<Edge>,
-    pub(super) exact: Resolver,
-    /// Which strips are resolved.
-    pub(super) crossed: Vec<bool>,
     pub(super) sample: SampleScratch,
     pub(super) layers: Vec<LayerBuffer>,
     pub(super) spare_layers: Vec<LayerBuffer>,

@@ -12,7 +12,6 @@ use crate::raster::batch::add_edges;
 use crate::raster::bins::Edges;
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
-use crate::raster::kernel::Reach;
 use crate::raster::sweep::{BlockSink, CoverageRule, sweep, sweep_rect};
 use crate::raster::{kernel, sample};
 use crate::style::{Antialias, FillRule};
@@ -118,22 +117,21 @@ fn accumulate_inner<S: Simd>(
         return Coverage::Rect(rect);
     }
     let top = frame.top << fixed::SHIFT;
-    // Where outlines do not cross, areas are exact.
-    let simple = edges.crossed().is_some_and(|crossed| crossed.is_empty());
-    if antialias == Antialias::Analytic || antialias == Antialias::Exact && simple {
-        let BandScratch { cells, reaches, visible, .. } = scratch;
-        reaches.clear();
-        reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
-        add_as_they_are(simd, cells, edges, top, frame.strips, rule, reaches);
-        return Coverage::Cells(rule.into());
-    }
     let grid = match antialias {
-        Antialias::Exact => {
-            add_exactly(simd, frame, scratch, edges, rule);
+        Antialias::Analytic | Antialias::Exact => {
+            let BandScratch { cells, reaches, visible, .. } = scratch;
+            reaches.clear();
+            reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
+            // Sums by the even-odd rule may wrap around: what is lost is even.
+            if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
+                kernel::add_crowd(simd, cells, edges, top, frame.strips, reaches);
+            } else {
+                add_edges(simd, cells, edges, top, frame.strips, reaches);
+            }
             return Coverage::Cells(rule.into());
         }
         Antialias::Supersample(grid) => grid.clamp(1, 16),
-        Antialias::None | Antialias::Analytic => 1,
+        Antialias::None => 1,
     };
     let edges = &*listed(&mut scratch.edges, edges);
     for strip in 0..frame.strips {
@@ -143,49 +141,6 @@ fn accumulate_inner<S: Simd>(
         }
     }
     Coverage::Cells(CoverageRule::Samples(u16::from(grid) * u16::from(grid)))
-}
-
-/// Adds the edges of a shape that crosses itself: as they are where it does not, or too often.
-#[inline(always)]
-fn add_exactly<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch, edges: Edges<'_>, rule: FillRule) {
-    let top = frame.top << fixed::SHIFT;
-    let BandScratch { cells, reaches, visible, exact, crossed, .. } = scratch;
-    // Of each strip, what is seen of it.
-    let seen = |strip: usize| visible.get(strip).map_or(Reach::EVERYTHING, |blocks| reach(*blocks));
-    crossed.clear();
-    crossed.extend((0..frame.strips).map(|strip| {
-        visible.get(strip).is_none_or(|(first, end)| first < end)
-            && edges.crossed().is_none_or(|crossed| crossed.contains(&(frame.strip_top(strip) / BLOCK_HEIGHT as i32)))
-    }));
-    exact.resolve(edges, top, crossed, rule);
-    if crossed.contains(&false) {
-        reaches.clear();
-        let reaches_of = |(strip, crossed): (usize, &bool)| if *crossed { Reach::NOTHING } else { seen(strip) };
-        reaches.extend(crossed.iter().enumerate().map(reaches_of));
-        add_as_they_are(simd, cells, edges, top, frame.strips, rule, reaches);
-    }
-    reaches.clear();
-    reaches.extend((0..frame.strips).map(seen));
-    exact.add(simd, cells, top, reaches);
-}
-
-/// Adds edges whose windings the sweep is to read by the rule.
-#[inline(always)]
-fn add_as_they_are<S: Simd>(
-    simd: S,
-    cells: &mut Accumulator,
-    edges: Edges<'_>,
-    top: i32,
-    strips: usize,
-    rule: FillRule,
-    reaches: &[Reach],
-) {
-    // Sums by the even-odd rule may wrap around: what is lost is even.
-    if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
-        kernel::add_crowd(simd, cells, edges, top, strips, reaches);
-    } else {
-        add_edges(simd, cells, edges, top, strips, reaches);
-    }
 }
 
 /// Edges side by side, for steps that look at them more than once.

@@ -14,7 +14,7 @@ use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
 use crate::path::stroke::{StrokeScratch, stroke};
 use crate::raster::bins::{BandItem, BandList, EdgeBins, Edges, Role};
-use crate::style::Antialias;
+use crate::style::{Antialias, FillRule};
 
 /// The edges of a range of commands. Chunks are prepared independently of each other; a band reads them
 /// one after another.
@@ -150,8 +150,12 @@ impl Chunk {
                 return;
             }
         }
-        let prove = antialias == Antialias::Exact;
-        self.bins.add(simd, item, &self.polygons, bounds, bounds.right >= frame.right, prove);
+        let rule = match geometry {
+            Geometry::Fill { rule, .. } => *rule,
+            _ => FillRule::NonZero,
+        };
+        let resolve = (antialias == Antialias::Exact).then_some(rule);
+        self.bins.add(simd, item, &self.polygons, bounds, bounds.right >= frame.right, resolve);
     }
 }
 
