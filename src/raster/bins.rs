@@ -181,8 +181,8 @@ impl EdgeBins {
     }
 
     /// Lists the edges of `polygons` within `clip` (device pixels) as those of a command, for the bands that they touch.
-    /// `open_right` says that no pixel right of `clip` can be drawn. By `resolve`, a fill rule, edges that cross are
-    /// replaced by what bounds the inside.
+    /// `open_right` says that no pixel right of `clip` can be drawn. By `crossings`, edges that cross are replaced by what
+    /// bounds the inside.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &mut self,
@@ -191,12 +191,14 @@ impl EdgeBins {
         polygons: &Polygons,
         clip: IntRect,
         open_right: bool,
-        resolve: Option<FillRule>,
+        crossings: Option<Crossings>,
     ) {
         let extent = extent(simd, polygons.points());
-        if let Some(rule) = resolve
+        // Before they are cut, so that it does not depend on where.
+        if let Some(crossings) = crossings
             && extent.is_some_and(|extent| extent.iter().all(|v| v.abs() < FARTHEST))
-            && self.resolve(simd, polygons, rule)
+            && polygons.points().len() <= MOST_CORNERS
+            && self.resolve(simd, polygons, crossings)
         {
             self.add_cut((command, role), Outlines::Resolved, clip, open_right);
             return;
@@ -214,21 +216,22 @@ impl EdgeBins {
         }
     }
 
-    /// Whether polygons cross themselves or each other, and what bounds their inside was found. It is, before they are cut, so
-    /// that it does not depend on where.
-    #[inline(never)]
-    fn resolve<S: Simd>(&mut self, simd: S, polygons: &Polygons, rule: FillRule) -> bool {
+    /// Whether polygons cross themselves or each other, and what bounds their inside was found.
+    #[inline(always)]
+    fn resolve<S: Simd>(&mut self, simd: S, polygons: &Polygons, crossings: Crossings) -> bool {
         let Self { outline, ends, simplicity, resolver, .. } = self;
-        if polygons.points().len() > MOST_CORNERS {
-            return false;
-        }
         outline.clear();
         ends.clear();
         for polygon in polygons.iter() {
             append_closed(simd, polygon, outline);
             ends.push(outline.len());
         }
-        simplicity.wind_once(simd, outline, ends) == Some(false) && resolver.resolve(outline, simplicity.sides(), rule)
+        let may_cross = if crossings.likely {
+            simplicity.list_outlines(outline, ends)
+        } else {
+            simplicity.wind_once(simd, outline, ends) == Some(false)
+        };
+        may_cross && resolver.resolve(simd, outline, simplicity.sides(), crossings.rule)
     }
 
     /// Lists polygons that lie between `top` and `bottom` (fixed point) and need no clipping.
@@ -291,9 +294,13 @@ impl EdgeBins {
                     if points.last() != Some(&from) {
                         points.push(from);
                     }
-                    let start = points.len() - 1;
+                    let start = points.len() as u32 - 1;
                     points.push(to);
-                    list_by_band(bands, points, start, first_top, *band_shift);
+                    let (top, bottom) = if from.y < to.y { (from.y, to.y) } else { (to.y, from.y) };
+                    let (first, last) = ((top - first_top) >> *band_shift, (bottom - 1 - first_top) >> *band_shift);
+                    for band in bands.get_mut(first as usize..=last as usize).unwrap_or(&mut []) {
+                        band.edges.push(start);
+                    }
                 }
             },
         );
@@ -311,6 +318,14 @@ impl EdgeBins {
     fn bands_of(&mut self, top: i32, bottom: i32) -> &mut [BandList] {
         touched(&mut self.bands, top, bottom, self.band_shift).unwrap_or(&mut [])
     }
+}
+
+/// What exact coverage asks of a shape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossings {
+    pub(crate) rule: FillRule,
+    /// Whether its outlines hardly ever stay apart, so that a proof of it is not worth trying: those of strokes.
+    pub(crate) likely: bool,
 }
 
 /// What is to be cut.

@@ -12,6 +12,8 @@
 //! Crossings are rounded to 1/256 pixel, as corners are. The order is that in the middle between two such heights, and windings
 //! are counted along it, so that they always add up: what rounding may change is some 2^-17 of a pixel, never a row.
 
+use fearless_simd::Simd;
+
 use super::edge::FixedPoint;
 use super::simple::Side;
 use crate::num::lanes::round_f64;
@@ -19,7 +21,7 @@ use crate::style::FillRule;
 
 /// After so many looks at edges in all, and so many for each corner, outlines stay as they are: at such density, what
 /// is inside of them no longer shows.
-const LOOKS: usize = 1 << 20;
+const LOOKS: usize = 1 << 21;
 const LOOKS_PER_CORNER: usize = 256;
 
 /// Where nothing happens.
@@ -85,6 +87,16 @@ impl Active {
         if y == self.side.to.y { self.side.to } else { FixedPoint { x: round_f64(self.x_at(2 * y)), y } }
     }
 
+    #[inline(always)]
+    fn leftmost(&self) -> i32 {
+        self.side.from.x.min(self.side.to.x)
+    }
+
+    #[inline(always)]
+    fn rightmost(&self) -> i32 {
+        self.side.from.x.max(self.side.to.x)
+    }
+
     /// Ends the piece in work at `y`.
     #[inline(always)]
     fn finish(&mut self, y: i32, pieces: &mut Vec<[FixedPoint; 2]>) {
@@ -109,9 +121,7 @@ impl Active {
     #[inline(always)]
     fn crossing(&self, other: &Self, y: i32) -> i32 {
         let bottom = self.side.to.y.min(other.side.to.y);
-        let rightmost = self.side.from.x.max(self.side.to.x);
-        let leftmost = other.side.from.x.min(other.side.to.x);
-        if rightmost <= leftmost || bottom - y < 2 {
+        if self.rightmost() <= other.leftmost() || bottom - y < 2 {
             return NEVER;
         }
         let overlap = self.x_at(2 * bottom - 1) - other.x_at(2 * bottom - 1);
@@ -128,14 +138,27 @@ fn slope(side: Side) -> f64 {
     f64::from(side.to.x - side.from.x) / f64::from(side.to.y - side.from.y)
 }
 
+/// Whether an edge shares no column with those beside it: it then stays where it is.
+#[inline(always)]
+fn is_alone(active: &[Active], index: usize) -> bool {
+    let Some(edge) = active.get(index) else { return false };
+    let before = index.checked_sub(1).and_then(|index| active.get(index));
+    before.is_none_or(|before| before.rightmost() < edge.leftmost())
+        && active.get(index + 1).is_none_or(|after| edge.rightmost() < after.leftmost())
+}
+
 impl Resolver {
     /// Finds the pieces that bound the inside of a shape. `sides` are those of its outlines, whose corners are `points`, in the
     /// order of their tops. False where sums of areas are coverage, or where it takes too long to find out.
-    pub(super) fn resolve(&mut self, points: &[FixedPoint], sides: &[Side], rule: FillRule) -> bool {
-        let found = match rule {
-            FillRule::NonZero => self.sweep::<false>(points, sides),
-            FillRule::EvenOdd => self.sweep::<true>(points, sides),
-        };
+    #[inline(never)]
+    pub(super) fn resolve<S: Simd>(&mut self, simd: S, points: &[FixedPoint], sides: &[Side], rule: FillRule) -> bool {
+        let found = simd.vectorize(
+            #[inline(always)]
+            || match rule {
+                FillRule::NonZero => self.sweep::<false>(points, sides),
+                FillRule::EvenOdd => self.sweep::<true>(points, sides),
+            },
+        );
         found.unwrap_or(false)
     }
 
@@ -145,7 +168,7 @@ impl Resolver {
     }
 
     /// Whether edges had to be cut, left out or turned round; `None` where that takes too long.
-    #[inline(never)]
+    #[inline(always)]
     fn sweep<const EVEN_ODD: bool>(&mut self, points: &[FixedPoint], sides: &[Side]) -> Option<bool> {
         self.active.clear();
         self.next.clear();
@@ -172,9 +195,12 @@ impl Resolver {
                 self.insert(*side, &mut touched);
                 coming = rest;
             }
-            self.look_ahead(y, touched);
-            self.apply::<EVEN_ODD>(y, touched, &mut same, &mut reversed);
-            looks = looks.checked_sub(4 + touched.last - touched.first + self.active.len() / 8)?;
+            looks = looks.checked_sub(1 + self.active.len() / 8)?;
+            if touched.first <= touched.last {
+                looks = looks.checked_sub(3 + touched.last - touched.first)?;
+                self.look_ahead(y, touched);
+                self.apply::<EVEN_ODD>(y, touched, &mut same, &mut reversed);
+            }
         }
         Some(!same && !reversed)
     }
@@ -186,7 +212,6 @@ impl Resolver {
         let mut index = 0;
         while let Some(event) = next.get(index) {
             if *event == y {
-                touched.add(index);
                 if let Some(edge) = active.get_mut(index)
                     && edge.side.to.y == y
                 {
@@ -194,12 +219,21 @@ impl Resolver {
                     if !edge.advance(points) {
                         active.remove(index);
                         next.remove(index);
+                        touched.add(index);
                         touched.add(index.saturating_sub(1));
+                        continue;
+                    }
+                    if is_alone(active, index) {
+                        if let (Some(edge), Some(event)) = (active.get(index), next.get_mut(index)) {
+                            *event = edge.side.to.y;
+                        }
+                        index += 1;
                         continue;
                     }
                 } else {
                     touched.add(index + 1);
                 }
+                touched.add(index);
             }
             index += 1;
         }
@@ -215,8 +249,9 @@ impl Resolver {
             if before.x_at(half) > x {
                 let place = self.active.get(..index - 1).unwrap_or(&[]).iter().rposition(|other| other.x_at(half) <= x);
                 let place = place.map_or(0, |place| place + 1);
-                if let Some(part) = self.active.get_mut(place..=index) {
-                    part.rotate_right(1);
+                // Mostly two change places.
+                for index in (place..index).rev() {
+                    self.active.swap(index, index + 1);
                 }
                 touched.add(place);
                 touched.add(index);
@@ -346,8 +381,14 @@ mod tests {
         let ends: Vec<usize> = ends.collect();
         let mut simplicity = Simplicity::default();
         assert_ne!(simplicity.sweep_outlines(&points, &ends), None);
-        let mut resolver = Resolver::default();
-        resolver.resolve(&points, simplicity.sides(), rule).then(|| resolver.pieces().concat())
+        let found = SimdLevel::available().into_iter().map(|level| {
+            let mut resolver = Resolver::default();
+            let found = dispatch!(level, simd => resolver.resolve(simd, &points, simplicity.sides(), rule));
+            found.then(|| resolver.pieces().concat())
+        });
+        let found: Vec<_> = found.collect();
+        assert!(found.windows(2).all(|pair| pair[0] == pair[1]), "levels differ");
+        found.into_iter().next().unwrap()
     }
 
     /// How much of each pixel is inside by summed areas of the pieces.

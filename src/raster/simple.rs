@@ -53,8 +53,8 @@ pub(super) struct Simplicity {
 }
 
 impl Simplicity {
-    /// Whether closed outlines neither cross themselves nor each other, and wind once around what is inside, all the same way. `None`
-    /// where the search is given up. Each outline's last corner is its first; `ends` says where they end.
+    /// Whether closed outlines neither cross themselves nor each other, and wind once around what is inside, all the same way; false
+    /// where that is not found out. `None` if there are too many of them, or they lie too far out. Each outline's last corner is its first; `ends` says where they end.
     #[inline(never)]
     pub(super) fn wind_once<S: Simd>(&mut self, simd: S, points: &[FixedPoint], ends: &[usize]) -> Option<bool> {
         let apart = &mut self.apart;
@@ -68,18 +68,24 @@ impl Simplicity {
     /// As [`wind_once`](Self::wind_once), by the sweep alone.
     #[inline(never)]
     pub(super) fn sweep_outlines(&mut self, points: &[FixedPoint], ends: &[usize]) -> Option<bool> {
+        self.list_outlines(points, ends).then(|| self.sweep(points).unwrap_or(false))
+    }
+
+    /// Lists the sides of outlines; false if there are too many, or they lie too far out.
+    pub(super) fn list_outlines(&mut self, points: &[FixedPoint], ends: &[usize]) -> bool {
         self.sides.clear();
         let mut start = 0;
         for end in ends {
             if !self.list_sides(points, start, *end) || self.sides.len() > MOST_SIDES {
-                return None;
+                return false;
             }
             start = *end;
         }
-        self.sweep(points)
+        self.sides.sort_unstable_by_key(|side| (side.from.y, side.from.x));
+        true
     }
 
-    /// The outlines' sides in the order of their tops, after a sweep.
+    /// The sides that are listed, in the order of their tops.
     pub(super) fn sides(&self) -> &[Side] {
         &self.sides
     }
@@ -129,7 +135,6 @@ impl Simplicity {
     /// From top to bottom, to where outlines cross; `None` where the search is given up.
     fn sweep(&mut self, points: &[FixedPoint]) -> Option<bool> {
         let Self { sides, active, .. } = self;
-        sides.sort_unstable_by_key(|side| (side.from.y, side.from.x));
         active.clear();
         let mut looks = LOOKS + LOOKS_PER_CORNER * points.len();
         let mut coming = &sides[..];
@@ -465,7 +470,7 @@ mod tests {
         }
         // Too far out for 64 bits, and too high for the time that it is worth.
         assert_eq!(found(&[vec![(0, 0), (i32::MAX, 5), (i32::MIN, 9)]]), None);
-        assert_eq!(found(&[rect(0, 0, 9, 1 << 28)]), None);
+        assert_eq!(found(&[rect(0, 0, 9, 1 << 28)]), Some(false));
         // Far down, and opposite windings in different strips.
         assert_eq!(found(&[vec![(0, -4000), (100, -4000), (0, 9000), (100, 9000)]]), Some(false));
         assert_eq!(found(&[rect(0, -9000, 50, 2048), reversed(rect(0, 2048, 50, 2100))]), Some(true));

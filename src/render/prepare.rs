@@ -13,7 +13,7 @@ use crate::paint::PreparedPaint;
 use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
 use crate::path::stroke::{StrokeScratch, stroke};
-use crate::raster::bins::{BandItem, BandList, EdgeBins, Edges, Role};
+use crate::raster::bins::{BandItem, BandList, Crossings, EdgeBins, Edges, Role};
 use crate::style::{Antialias, FillRule};
 
 /// The edges of a range of commands. Chunks are prepared independently of each other; a band reads them
@@ -150,12 +150,11 @@ impl Chunk {
                 return;
             }
         }
-        let rule = match geometry {
-            Geometry::Fill { rule, .. } => *rule,
-            _ => FillRule::NonZero,
-        };
-        let resolve = (antialias == Antialias::Exact).then_some(rule);
-        self.bins.add(simd, item, &self.polygons, bounds, bounds.right >= frame.right, resolve);
+        let crossings = (antialias == Antialias::Exact).then_some(match geometry {
+            Geometry::Fill { rule, .. } => Crossings { rule: *rule, likely: false },
+            _ => Crossings { rule: FillRule::NonZero, likely: true },
+        });
+        self.bins.add(simd, item, &self.polygons, bounds, bounds.right >= frame.right, crossings);
     }
 }
 
