@@ -22,7 +22,7 @@ use crate::style::FillRule;
 /// After so many looks at edges in all, and so many for each corner, outlines stay as they are: at such density, what
 /// is inside of them no longer shows.
 const LOOKS: usize = 1 << 21;
-const LOOKS_PER_CORNER: usize = 256;
+const LOOKS_PER_CORNER: usize = 128;
 
 /// Where nothing happens.
 const NEVER: i32 = i32::MAX;
@@ -34,6 +34,8 @@ pub(super) struct Resolver {
     active: Vec<Active>,
     /// The height at which each of them ends or crosses the next one.
     next: Vec<i32>,
+    /// How many looks are left.
+    looks: usize,
     /// Where each piece starts and ends.
     pieces: Vec<[FixedPoint; 2]>,
 }
@@ -174,7 +176,7 @@ impl Resolver {
         self.next.clear();
         self.pieces.clear();
         let mut coming = sides;
-        let mut looks = LOOKS + LOOKS_PER_CORNER * points.len();
+        self.looks = LOOKS + LOOKS_PER_CORNER * points.len();
         // Whether all edges bound the inside as they are, or all the other way round.
         let (mut same, mut reversed) = (true, true);
         loop {
@@ -195,20 +197,29 @@ impl Resolver {
                 self.insert(*side, &mut touched);
                 coming = rest;
             }
-            looks = looks.checked_sub(1 + self.active.len() / 8)?;
+            self.spend(1 + self.active.len() / 8);
             if touched.first <= touched.last {
-                looks = looks.checked_sub(3 + touched.last - touched.first)?;
+                self.spend(3 + touched.last - touched.first);
                 self.look_ahead(y, touched);
                 self.apply::<EVEN_ODD>(y, touched, &mut same, &mut reversed);
+            }
+            if self.looks == 0 {
+                return None;
             }
         }
         Some(!same && !reversed)
     }
 
+    /// Counts looks.
+    #[inline(always)]
+    fn spend(&mut self, looks: usize) {
+        self.looks = self.looks.saturating_sub(looks);
+    }
+
     /// Goes on from edges that end at `y`.
     #[inline(always)]
     fn go_on(&mut self, points: &[FixedPoint], y: i32, touched: &mut Touched) {
-        let Self { active, next, pieces } = self;
+        let Self { active, next, looks, pieces } = self;
         let mut index = 0;
         while let Some(event) = next.get(index) {
             if *event == y {
@@ -219,6 +230,7 @@ impl Resolver {
                     if !edge.advance(points) {
                         active.remove(index);
                         next.remove(index);
+                        *looks = looks.saturating_sub(active.len() / 8);
                         touched.add(index);
                         touched.add(index.saturating_sub(1));
                         continue;
@@ -250,6 +262,10 @@ impl Resolver {
                 let place = self.active.get(..index - 1).unwrap_or(&[]).iter().rposition(|other| other.x_at(half) <= x);
                 let place = place.map_or(0, |place| place + 1);
                 // Mostly two change places.
+                self.spend(index - place);
+                if self.looks == 0 {
+                    return;
+                }
                 for index in (place..index).rev() {
                     self.active.swap(index, index + 1);
                 }
@@ -269,6 +285,7 @@ impl Resolver {
         let half = 2 * side.from.y + 1;
         let x = edge.x_at(half);
         let place = self.active.partition_point(|other| other.x_at(half) <= x);
+        self.spend(self.active.len() / 8);
         self.active.insert(place, edge);
         self.next.insert(place, NEVER);
         if place <= touched.last {
@@ -489,6 +506,21 @@ mod tests {
         let mut upright: Vec<_> = overlapping.as_chunks::<2>().0.iter().map(|[a, b]| (a.x, a.y, b.y)).collect();
         upright.sort_unstable();
         assert_eq!(upright, [(0, 0, 1024), (256, 1024, 2048), (512, 512, 0), (768, 2048, 512)]);
+    }
+
+    /// Thousands of lines that all cross in one point, and a comb whose teeth all start at one height beside long lines.
+    #[test]
+    fn many_edges_at_one_height_end_soon() {
+        let star = closed((0..4001).map(|i| {
+            let angle = std::f64::consts::TAU * f64::from(i) * 2000.0 / 4001.0;
+            let [x, y] = [libm::cos(angle), libm::sin(angle)].map(|v| (v * 4e6) as i32 + 5_000_000);
+            (x, y)
+        }));
+        let teeth = |left: i32, top: i32| {
+            closed((0..20_000).map(|i| (left + 64 * i, if i % 2 == 0 { 9_000_000 } else { top })))
+        };
+        pieces_of(&[star], FillRule::EvenOdd);
+        pieces_of(&[teeth(2_000_000, 0), teeth(0, 5000)], FillRule::NonZero);
     }
 
     #[test]
