@@ -99,6 +99,13 @@ impl Active {
         self.side.from.x.max(self.side.to.x)
     }
 
+    /// Whether it shares no column with those beside it: it then stays where it is.
+    #[inline(always)]
+    fn is_alone(&self, before: Option<&Self>, after: Option<&Self>) -> bool {
+        before.is_none_or(|before| before.rightmost() < self.leftmost())
+            && after.is_none_or(|after| self.rightmost() < after.leftmost())
+    }
+
     /// Ends the piece in work at `y`.
     #[inline(always)]
     fn finish(&mut self, y: i32, pieces: &mut Vec<[FixedPoint; 2]>) {
@@ -138,15 +145,6 @@ impl Active {
 #[inline(always)]
 fn slope(side: Side) -> f64 {
     f64::from(side.to.x - side.from.x) / f64::from(side.to.y - side.from.y)
-}
-
-/// Whether an edge shares no column with those beside it: it then stays where it is.
-#[inline(always)]
-fn is_alone(active: &[Active], index: usize) -> bool {
-    let Some(edge) = active.get(index) else { return false };
-    let before = index.checked_sub(1).and_then(|index| active.get(index));
-    before.is_none_or(|before| before.rightmost() < edge.leftmost())
-        && active.get(index + 1).is_none_or(|after| edge.rightmost() < after.leftmost())
 }
 
 impl Resolver {
@@ -219,36 +217,41 @@ impl Resolver {
     /// Goes on from edges that end at `y`.
     #[inline(always)]
     fn go_on(&mut self, points: &[FixedPoint], y: i32, touched: &mut Touched) {
-        let Self { active, next, looks, pieces } = self;
-        let mut index = 0;
-        while let Some(event) = next.get(index) {
-            if *event == y {
-                if let Some(edge) = active.get_mut(index)
-                    && edge.side.to.y == y
-                {
+        let Self { active, next, pieces, .. } = self;
+        let mut kept = 0_usize;
+        for index in 0..active.len() {
+            if next.get(index) == Some(&y)
+                && let Some(edge) = active.get_mut(index)
+            {
+                let (mut is_alone, mut last) = (false, kept + 1);
+                if edge.side.to.y == y {
                     edge.finish(y, pieces);
                     if !edge.advance(points) {
-                        active.remove(index);
-                        next.remove(index);
-                        *looks = looks.saturating_sub(active.len() / 8);
-                        touched.add(index);
-                        touched.add(index.saturating_sub(1));
+                        touched.add(kept.saturating_sub(1));
+                        touched.add(kept);
                         continue;
                     }
-                    if is_alone(active, index) {
-                        if let (Some(edge), Some(event)) = (active.get(index), next.get_mut(index)) {
-                            *event = edge.side.to.y;
-                        }
-                        index += 1;
-                        continue;
+                    let edge = *edge;
+                    let before = kept.checked_sub(1).and_then(|before| active.get(before));
+                    is_alone = edge.is_alone(before, active.get(index + 1));
+                    last = kept;
+                    if let Some(event) = next.get_mut(index) {
+                        *event = edge.side.to.y;
                     }
-                } else {
-                    touched.add(index + 1);
                 }
-                touched.add(index);
+                if !is_alone {
+                    touched.add(kept);
+                    touched.add(last);
+                }
             }
-            index += 1;
+            if kept < index {
+                active.copy_within(index..=index, kept);
+                next.copy_within(index..=index, kept);
+            }
+            kept += 1;
         }
+        active.truncate(kept);
+        next.truncate(kept);
     }
 
     /// Puts the touched edges in their order just below `y`.
@@ -285,7 +288,7 @@ impl Resolver {
         let half = 2 * side.from.y + 1;
         let x = edge.x_at(half);
         let place = self.active.partition_point(|other| other.x_at(half) <= x);
-        self.spend(self.active.len() / 8);
+        self.spend((self.active.len() - place) / 8);
         self.active.insert(place, edge);
         self.next.insert(place, NEVER);
         if place <= touched.last {
