@@ -218,8 +218,19 @@ impl Resolver {
     #[inline(always)]
     fn go_on(&mut self, points: &[FixedPoint], y: i32, touched: &mut Touched) {
         let Self { active, next, pieces, .. } = self;
-        let mut kept = 0_usize;
-        for index in 0..active.len() {
+        let (mut index, mut kept) = (0_usize, 0_usize);
+        while index < active.len() {
+            // Mostly nothing happens to many side by side.
+            if let Some(ahead) = next.get(index..).and_then(|rest| rest.first_chunk::<16>())
+                && !ahead.iter().fold(false, |any, event| any | (*event == y))
+            {
+                if kept < index {
+                    active.copy_within(index..index + 16, kept);
+                    next.copy_within(index..index + 16, kept);
+                }
+                (index, kept) = (index + 16, kept + 16);
+                continue;
+            }
             if next.get(index) == Some(&y)
                 && let Some(edge) = active.get_mut(index)
             {
@@ -229,6 +240,7 @@ impl Resolver {
                     if !edge.advance(points) {
                         touched.add(kept.saturating_sub(1));
                         touched.add(kept);
+                        index += 1;
                         continue;
                     }
                     let edge = *edge;
@@ -248,7 +260,7 @@ impl Resolver {
                 active.copy_within(index..=index, kept);
                 next.copy_within(index..=index, kept);
             }
-            kept += 1;
+            (index, kept) = (index + 1, kept + 1);
         }
         active.truncate(kept);
         next.truncate(kept);

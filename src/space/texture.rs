@@ -131,6 +131,7 @@ impl Texture {
     }
 
     /// The bytes of its levels.
+    #[cfg(feature = "mesh")]
     pub(crate) fn bytes(&self) -> usize {
         self.levels.iter().map(|level| size_of_val(&level.pairs[..])).sum()
     }
