@@ -10,6 +10,7 @@ mod known;
 mod measure;
 mod outline;
 pub(crate) mod polygons;
+pub(crate) mod round_rect;
 mod shapes;
 pub(crate) mod stroke;
 mod stroke_style;

@@ -6,6 +6,7 @@ use fearless_simd::prelude::*;
 use super::cut::Cutter;
 use super::edge::{Edge, FixedPoint};
 use super::exact::Resolver;
+use super::round_rect::RoundRect;
 use super::simple::{MOST_CORNERS, Simplicity};
 use crate::geom::{FixedRect, IntRect, Point};
 use crate::num::fixed;
@@ -42,6 +43,8 @@ pub(crate) enum Content {
     Edges { start: u32, end: u32 },
     /// A rectangle in one colour, drawn over what is there: there is no need to look at the command.
     Rect(FixedRect, [u8; 4]),
+    /// A shape that has no edges.
+    RoundRect(RoundRect),
 }
 
 impl BandItem {
@@ -73,6 +76,29 @@ pub(crate) struct EdgeBins {
     ends: Vec<usize>,
     simplicity: Simplicity,
     resolver: Resolver,
+}
+
+/// What bounds a draw in one band.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Boundary<'a> {
+    Edges(Edges<'a>),
+    RoundRect(RoundRect),
+}
+
+impl Default for Boundary<'_> {
+    fn default() -> Self {
+        Self::Edges(Edges::default())
+    }
+}
+
+impl Boundary<'_> {
+    /// How many edges cost as much, to a guess.
+    pub(crate) fn cost(self) -> usize {
+        match self {
+            Self::Edges(edges) => edges.len(),
+            Self::RoundRect(_) => 8,
+        }
+    }
 }
 
 /// The edges of one draw in one band.
@@ -156,11 +182,17 @@ impl EdgeBins {
         self.bands.get(index)
     }
 
-    /// The edges of one of a band's items.
-    pub(crate) fn edges<'a>(&'a self, band: &'a BandList, item: BandItem) -> Edges<'a> {
-        let Content::Edges { start, end } = item.content else { return Edges::default() };
-        let starts = band.edges.get(start as usize..end as usize).unwrap_or(&[]);
-        Edges { points: &self.points, starts }
+    /// What bounds one of a band's items.
+    #[inline(always)]
+    pub(crate) fn boundary<'a>(&'a self, band: &'a BandList, item: BandItem) -> Boundary<'a> {
+        match item.content {
+            Content::Edges { start, end } => {
+                let starts = band.edges.get(start as usize..end as usize).unwrap_or(&[]);
+                Boundary::Edges(Edges { points: &self.points, starts })
+            }
+            Content::RoundRect(shape) => Boundary::RoundRect(shape),
+            Content::Rect(..) => Boundary::default(),
+        }
     }
 
     /// Lists `command`, which has no edges, for every band that `bounds` (device pixels) touches.
@@ -176,6 +208,17 @@ impl EdgeBins {
         if rect.left < rect.right {
             for band in self.bands_of(rect.top, rect.bottom) {
                 band.items.push(BandItem { command, role, content: Content::Rect(rect, color) });
+            }
+        }
+    }
+
+    /// Lists `command`, a shape of which what lies in `clip` (device pixels) is drawn, for every band that it touches.
+    #[inline(always)]
+    pub(crate) fn list_round_rect(&mut self, (command, role): (u32, Role), shape: RoundRect, clip: IntRect) {
+        let seen = shape.rect.intersect(clip);
+        if seen.left < seen.right {
+            for band in self.bands_of(seen.top, seen.bottom) {
+                band.items.push(BandItem { command, role, content: Content::RoundRect(shape) });
             }
         }
     }
@@ -396,7 +439,7 @@ fn list_by_band(bands: &mut [BandList], points: &[FixedPoint], start: usize, fir
 /// The smallest and greatest x and y of some points, as left, top, right, bottom; `None` if there is no point, or one
 /// that is not finite.
 #[inline(always)]
-fn extent<S: Simd>(simd: S, points: &[Point]) -> Option<[f32; 4]> {
+pub(crate) fn extent<S: Simd>(simd: S, points: &[Point]) -> Option<[f32; 4]> {
     let first = *points.first()?;
     let start = f32x8::load_array(simd, [first.x, first.y, first.x, first.y, first.x, first.y, first.x, first.y]);
     let (mut low, mut high, mut finite) = (start, start, start * 0.0);
@@ -411,14 +454,17 @@ fn extent<S: Simd>(simd: S, points: &[Point]) -> Option<[f32; 4]> {
         high = max_f32(v, high);
         finite += v * 0.0;
     }
-    let smallest = |lanes: [f32; 8], lane: usize| {
-        lanes.iter().skip(lane).step_by(2).copied().reduce(|a, b| if b < a { b } else { a })
-    };
-    let (low, high, finite) = (low.to_array(), (high * -1.0).to_array(), finite.to_array());
-    if finite != [0.0; 8] {
+    if finite.to_array() != [0.0; 8] {
         return None;
     }
-    Some([smallest(low, 0)?, smallest(low, 1)?, -smallest(high, 0)?, -smallest(high, 1)?])
+    // Written out: iterators over every second lane are calls.
+    let smaller = |a: f32, b: f32| if b < a { b } else { a };
+    let [a, b, c, d, e, f, g, h] = low.to_array();
+    let (left, top) = (smaller(smaller(a, c), smaller(e, g)), smaller(smaller(b, d), smaller(f, h)));
+    let larger = |a: f32, b: f32| if b > a { b } else { a };
+    let [a, b, c, d, e, f, g, h] = high.to_array();
+    let (right, bottom) = (larger(larger(a, c), larger(e, g)), larger(larger(b, d), larger(f, h)));
+    Some([left, top, right, bottom])
 }
 
 /// Four points in fixed point. Not a closure: those are not always inlined, and lose the SIMD level then.
@@ -481,7 +527,9 @@ mod tests {
         let band = bins.band(0).unwrap();
         let mut edges = Vec::new();
         for item in &band.items {
-            bins.edges(band, *item).for_each(|edge| edges.push(edge));
+            if let Boundary::Edges(listed) = bins.boundary(band, *item) {
+                listed.for_each(|edge| edges.push(edge));
+            }
         }
         edges
     }

@@ -72,6 +72,12 @@ impl Reach {
         (first as i32) << FINE_SHIFT >= self.low && (last as i32) << FINE_SHIFT < self.high
     }
 
+    /// The first and the end of the columns that matter.
+    #[inline(always)]
+    pub(super) fn to_columns(self) -> (i32, i32) {
+        (self.low >> FINE_SHIFT, self.high >> FINE_SHIFT)
+    }
+
     pub(crate) const NOTHING: Self = Self { low: i32::MIN, high: i32::MIN };
 
     /// The columns `first..end`.

@@ -26,6 +26,7 @@ pub(crate) mod exact;
 pub(crate) mod kernel;
 pub mod line;
 pub mod polygon;
+pub(crate) mod round_rect;
 pub(crate) mod sample;
 mod simple;
 mod stair;

@@ -23,7 +23,7 @@ use crate::display_list::{Command, DisplayList, Draw, Geometry, LayerStart};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::level::{SimdLevel, dispatch};
 use crate::paint::PreparedPaint;
-use crate::raster::bins::{Content, Edges};
+use crate::raster::bins::{Boundary, Content};
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
 use crate::raster::kernel::Reach;
@@ -132,14 +132,14 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                 continue;
             }
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };
-            let edges = chunk.edges(band, *item);
+            let boundary = chunk.boundary(band, *item);
             match command {
                 Command::Draw(draw) => {
                     let Some(paint) = frame.list.paints.get(draw.paint as usize) else { continue };
                     if scratch.kept.holds(place) {
                         paint_kept(simd, frame, &mut scratch.kept, Look::new(draw, paint, None), target);
                     } else {
-                        paint_draw(simd, frame, target, scratch, draw, paint, edges);
+                        paint_draw(simd, frame, target, scratch, draw, paint, boundary);
                     }
                 }
                 Command::Clip(id) => scratch.clips.edges.push((id.0, chunk_index, *item)),
@@ -175,7 +175,7 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                         bounds: picture.bounds,
                         opaque: picture.paint.is_opaque(),
                     };
-                    paint_draw(simd, frame, target, scratch, &draw, &picture.paint, edges);
+                    paint_draw(simd, frame, target, scratch, &draw, &picture.paint, boundary);
                 }
             }
         }
@@ -197,11 +197,11 @@ fn paint_draw<S: Simd>(
     scratch: &mut BandScratch,
     draw: &Draw,
     paint: &PreparedPaint,
-    edges: Edges<'_>,
+    boundary: Boundary<'_>,
 ) {
     simd.vectorize(
         #[inline(always)]
-        || paint_draw_inner(simd, frame, target, scratch, draw, paint, edges),
+        || paint_draw_inner(simd, frame, target, scratch, draw, paint, boundary),
     )
 }
 
@@ -213,7 +213,7 @@ fn paint_draw_inner<S: Simd>(
     scratch: &mut BandScratch,
     draw: &Draw,
     paint: &PreparedPaint,
-    edges: Edges<'_>,
+    boundary: Boundary<'_>,
 ) {
     if matches!(paint, PreparedPaint::Nothing) && draw.blend_mode == BlendMode::SourceOver {
         return;
@@ -223,7 +223,7 @@ fn paint_draw_inner<S: Simd>(
     if !find_visible(frame, scratch, draw.bounds) {
         return;
     }
-    let coverage = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, draw.bounds, edges);
+    let coverage = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, draw.bounds, boundary);
     let BandScratch { cells, layers, clips, occlusion, visible, .. } = scratch;
     let surface = &mut open_surface(frame, target, layers);
     let clip = clips.current(draw.clip);

@@ -90,13 +90,13 @@ fn build_clip_inner<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScrat
             ClipKind::Geometry { geometry, antialias } => {
                 let found = scratch.clips.edges.binary_search_by_key(&id, |(clip, ..)| *clip);
                 let place = found.ok().and_then(|index| scratch.clips.edges.get(index)).copied();
-                let edges = place
+                let boundary = place
                     .and_then(|(_, chunk, item)| {
                         let chunk = frame.chunks.get(chunk)?;
-                        Some(chunk.edges(chunk.band(frame.index)?, item))
+                        Some(chunk.boundary(chunk.band(frame.index)?, item))
                     })
                     .unwrap_or_default();
-                let coverage = accumulate(simd, frame, scratch, geometry, *antialias, node.bounds, edges);
+                let coverage = accumulate(simd, frame, scratch, geometry, *antialias, node.bounds, boundary);
                 let parent = scratch.clips.chain.last().map(|(_, mask)| mask);
                 for strip in 0..frame.strips {
                     if !coverage.is_empty(frame, &scratch.cells, strip) {

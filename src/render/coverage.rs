@@ -9,9 +9,10 @@ use crate::display_list::{Geometry, Span};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::fixed;
 use crate::raster::batch::add_edges;
-use crate::raster::bins::Edges;
+use crate::raster::bins::{Boundary, Edges};
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
+use crate::raster::round_rect::add_round_rect;
 use crate::raster::sweep::{BlockSink, CoverageRule, sweep, sweep_rect};
 use crate::raster::{kernel, sample};
 use crate::style::{Antialias, FillRule};
@@ -87,11 +88,11 @@ pub(super) fn accumulate<S: Simd>(
     geometry: &Geometry,
     antialias: Antialias,
     bounds: IntRect,
-    edges: Edges<'_>,
+    boundary: Boundary<'_>,
 ) -> Coverage {
     simd.vectorize(
         #[inline(always)]
-        || accumulate_inner(simd, frame, scratch, geometry, antialias, bounds, edges),
+        || accumulate_inner(simd, frame, scratch, geometry, antialias, bounds, boundary),
     )
 }
 
@@ -103,7 +104,7 @@ fn accumulate_inner<S: Simd>(
     geometry: &Geometry,
     antialias: Antialias,
     bounds: IntRect,
-    edges: Edges<'_>,
+    boundary: Boundary<'_>,
 ) -> Coverage {
     let rule = match geometry {
         Geometry::Fill { rule, .. } => *rule,
@@ -117,11 +118,18 @@ fn accumulate_inner<S: Simd>(
         return Coverage::Rect(rect);
     }
     let top = frame.top << fixed::SHIFT;
+    let BandScratch { cells, reaches, visible, .. } = scratch;
+    reaches.clear();
+    reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
+    let edges = match boundary {
+        Boundary::Edges(edges) => edges,
+        Boundary::RoundRect(shape) => {
+            add_round_rect(simd, cells, &shape, bounds.intersect(frame.area()), top, frame.strips, reaches);
+            return Coverage::Cells(CoverageRule::NonZero);
+        }
+    };
     let grid = match antialias {
         Antialias::Analytic | Antialias::Exact => {
-            let BandScratch { cells, reaches, visible, .. } = scratch;
-            reaches.clear();
-            reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
             // Sums by the even-odd rule may wrap around: what is lost is even.
             if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
                 kernel::add_crowd(simd, cells, edges, top, frame.strips, reaches);

@@ -10,7 +10,8 @@ use super::occlusion::Occlusion;
 use crate::display_list::{Command, Draw};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::fixed;
-use crate::raster::bins::{Content, Edges, Role};
+use crate::raster::bins::{Boundary, Content, Role};
+use crate::raster::round_rect::RoundRect;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 /// A shape with more edges in a band than so many for each block that its bounds could hold is not asked what it hides.
@@ -49,10 +50,10 @@ pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut Ban
                     work += usize::from(claim_rect(frame, &mut scratch.occlusion, rect, place as u32));
                 }
             } else if let Some(Command::Draw(draw)) = frame.list.commands.get(item.command as usize) {
-                let edges = chunk.edges(band, *item);
-                if may_hide(frame, draw, edges.len(), place) {
-                    work += edges.len() + 1;
-                    claim_blocks(simd, frame, scratch, draw, edges, place as u32);
+                let boundary = chunk.boundary(band, *item);
+                if may_hide(frame, draw, boundary.cost(), place) {
+                    work += boundary.cost() + 1;
+                    claim_blocks(simd, frame, scratch, draw, boundary, place as u32);
                 }
             }
         }
@@ -76,7 +77,7 @@ fn claim_blocks<S: Simd>(
     frame: &Frame<'_>,
     scratch: &mut BandScratch,
     draw: &Draw,
-    edges: Edges<'_>,
+    boundary: Boundary<'_>,
     order: u32,
 ) {
     let seen = find_visible(frame, scratch, draw.bounds);
@@ -85,11 +86,15 @@ fn claim_blocks<S: Simd>(
         claim_rect(frame, &mut scratch.occlusion, rect, order);
         return;
     }
+    if seen && let Boundary::RoundRect(shape) = boundary {
+        claim_round_rect(frame, &mut scratch.occlusion, &shape, draw.bounds, order);
+        return;
+    }
     scratch.kept.begin(order);
     if !seen {
         return;
     }
-    let coverage = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, draw.bounds, edges);
+    let coverage = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, draw.bounds, boundary);
     simd.vectorize(
         #[inline(always)]
         || {
@@ -122,6 +127,31 @@ fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, ord
         }
     }
     true
+}
+
+/// Claims the blocks that a shape covers whole within `bounds` (device pixels).
+#[inline(always)]
+fn claim_round_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, shape: &RoundRect, bounds: IntRect, order: u32) {
+    const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
+    const STRIP: i32 = BLOCK_HEIGHT as i32;
+    let inside = shape.rect.intersect(bounds);
+    let (band_top, band_bottom) = (frame.top << fixed::SHIFT, (frame.top + frame.rows as i32) << fixed::SHIFT);
+    // The strips that lie within the shape.
+    let first = ((inside.top - band_top).max(0) + (STRIP << fixed::SHIFT) - 1) / (STRIP << fixed::SHIFT);
+    let arc = shape.arc();
+    for strip in first..frame.strips as i32 {
+        let top = band_top + ((strip * STRIP) << fixed::SHIFT);
+        let bottom = (top + (STRIP << fixed::SHIFT)).min(band_bottom);
+        if bottom > inside.bottom {
+            break;
+        }
+        let (left, right) = shape.inner(arc, top, bottom);
+        let (left, right) = (left.max(inside.left).max(0), right.min(inside.right).max(0));
+        let (start, end) = ((left + BLOCK - 1) / BLOCK, right / BLOCK);
+        if start < end {
+            occlusion.claim(order, strip as usize, start as usize, end as usize);
+        }
+    }
 }
 
 /// Notes for each strip where a draw within `bounds` can be seen; false if nowhere. Without hidden blocks it notes

@@ -12,8 +12,10 @@ use crate::num::level::{SimdLevel, dispatch};
 use crate::paint::PreparedPaint;
 use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
+use crate::path::round_rect::{may_be_round_rect, round_rect};
 use crate::path::stroke::{StrokeScratch, stroke};
-use crate::raster::bins::{BandItem, BandList, Crossings, EdgeBins, Edges, Role};
+use crate::raster::bins::{BandItem, BandList, Boundary, Crossings, EdgeBins, Role, extent};
+use crate::raster::round_rect::RoundRect;
 use crate::style::{Antialias, FillRule};
 
 /// The edges of a range of commands. Chunks are prepared independently of each other; a band reads them
@@ -44,9 +46,10 @@ impl Chunk {
         self.bins.band(index)
     }
 
-    /// The edges of one of its items.
-    pub(super) fn edges<'a>(&'a self, band: &'a BandList, item: BandItem) -> Edges<'a> {
-        self.bins.edges(band, item)
+    /// What bounds one of its items.
+    #[inline(always)]
+    pub(super) fn boundary<'a>(&'a self, band: &'a BandList, item: BandItem) -> Boundary<'a> {
+        self.bins.boundary(band, item)
     }
 
     /// Lists the edges of `range` of the list's commands.
@@ -131,6 +134,16 @@ impl Chunk {
                     self.mapped.extend(points.iter().map(|p| transform.map(*p)));
                     &self.mapped
                 };
+                if is_exact(antialias)
+                    && may_be_round_rect(verbs, points)
+                    && let Some([left, top, right, bottom]) = extent(simd, points)
+                    && let rect = Rect::from_ltrb(left, top, right, bottom)
+                    && let Some(radii) = round_rect(simd, verbs, points, rect)
+                    && let Some(shape) = RoundRect::new(rect, radii)
+                {
+                    self.bins.list_round_rect(item, shape, bounds);
+                    return;
+                }
                 flatten_fill(simd, verbs, points, &mut self.polygons);
             }
             Geometry::Stroke { outline, transform, style } => {
