@@ -83,7 +83,7 @@ pub(crate) fn round_rect<S: Simd>(simd: S, verbs: &[Verb], points: &[Point], bou
                 let step = (corner + 4 - corner_before) % 4;
                 match count {
                     0 => radii = size,
-                    1 if step % 2 == 0 => return None,
+                    1 if step.is_multiple_of(2) => return None,
                     1 => way = step,
                     _ if step != way => return None,
                     _ => {}

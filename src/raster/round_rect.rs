@@ -407,7 +407,7 @@ mod tests {
         fn shape(&mut self, case: usize) -> RoundRect {
             loop {
                 let rx = self.within(3.0, [6.0, 20.0, 128.0][case % 3]);
-                let ry = if case % 2 == 0 { rx } else { self.within(3.0, 60.0) };
+                let ry = if case.is_multiple_of(2) { rx } else { self.within(3.0, 60.0) };
                 let straight = [0.0, 0.7, 40.0][case / 3 % 3];
                 let (left, top) = (self.within(0.0, 20.0), self.within(0.0, 20.0));
                 let (right, bottom) = (left + 2.0 * rx + straight, top + 2.0 * ry + straight);
@@ -525,7 +525,7 @@ mod tests {
                     .collect();
                 let seen = accumulate(level, &shape, everywhere(), &reaches);
                 for (y, (row, expected)) in seen.iter().zip(&whole).enumerate() {
-                    if y / 8 % 3 != 0 {
+                    if !(y / 8).is_multiple_of(3) {
                         let (from, to) = (clip.left as usize, clip.right as usize);
                         assert_eq!(row[from..to], expected[from..to], "{shape:?}: row {y} at {level:?}");
                     }
