@@ -9,8 +9,8 @@ use super::bins::Edges;
 use super::cell::{Accumulator, Column, Strip};
 use super::edge::{FineLine, FixedPoint};
 use super::kernel::{
-    FINE_SHIFT, PieceLine, Reach, RowParts, STRIP_SHIFT, Slant, add_downward, add_row_parts, add_strip_part, are_flat,
-    fine, is_flat, two_columns,
+    FINE_SHIFT, PieceLine, Reach, RowParts, STRIP_SHIFT, Slant, add_across, add_downward, add_row_parts,
+    add_strip_part, are_flat, fine, is_flat, two_columns,
 };
 use crate::num::fixed;
 use crate::num::lanes::{greater_f32, lesser_f32, max_i32, min_i32};
@@ -47,6 +47,15 @@ pub(crate) fn add_edges<S: Simd>(
                 if !add_single(simd, cells, &eight, lane, strips, reaches) {
                     others |= 1 << lane;
                 }
+            }
+            let mut across = eight.across & all;
+            others &= !across;
+            while across != 0 {
+                let lane = across.trailing_zeros() as usize & 7;
+                across &= across - 1;
+                let strip = eight.start_y[lane] >> STRIP_SHIFT;
+                let ends = (eight.least[lane], eight.greatest[lane]);
+                add_across(simd, cells, strip, strips, eight.line(lane), ends, reaches);
             }
             let tall = others & eight.tall;
             if tall & tall.wrapping_sub(1) != 0 {
@@ -360,13 +369,7 @@ fn add_single<S: Simd>(
         return false;
     }
     if let Some(strip) = cells.strip(strip) {
-        let line = PieceLine {
-            below: eight.start_y[lane] & ((1 << STRIP_SHIFT) - 1),
-            height: eight.height[lane],
-            start: eight.start[lane],
-            slant: eight.slant(lane),
-        };
-        add_row_parts(simd, strip, RowParts::of(simd, line), first, last);
+        add_row_parts(simd, strip, RowParts::of(simd, eight.line(lane)), first, last);
     }
     true
 }
@@ -409,6 +412,8 @@ struct Eight {
     single: u32,
     /// Which of the latter have at most two rows and two columns.
     small: u32,
+    /// Which of them reach into a second strip and are reckoned in one go all the same.
+    across: u32,
     /// Which of them are higher than a strip.
     tall: u32,
     /// Where they start, downwards; y from the band's top.
@@ -441,6 +446,8 @@ impl Eight {
         let rows = ((end_y - 1) >> fixed::SHIFT) - (start_y >> fixed::SHIFT);
         let columns = (greatest >> fixed::SHIFT) - (least >> fixed::SHIFT);
         let small = (rows | columns).simd_lt(2);
+        let across = climbs & !one_strip & rows.simd_lt(BLOCK_HEIGHT as i32);
+        let flat = are_flat(least >> fixed::SHIFT, greatest >> fixed::SHIFT, height);
         let (run, rise) = ((end_x - start_x).to_float::<f32x8<S>>(), height.to_float::<f32x8<S>>());
         let zero = f32x8::splat(simd, 0.0);
         let steep = rise * winding.to_float::<f32x8<S>>() / run.abs();
@@ -448,6 +455,7 @@ impl Eight {
             climbs: climbs.to_bitmask() as u32,
             single: (climbs & one_strip).to_bitmask() as u32,
             small: (climbs & one_strip & small).to_bitmask() as u32,
+            across: across.to_bitmask() as u32 & !flat,
             tall: height.simd_gt(1 << STRIP_SHIFT).to_bitmask() as u32,
             start_x: start_x.to_array(),
             start_y: start_y.to_array(),
@@ -482,6 +490,17 @@ impl Eight {
     fn place(&self, lane: usize, strips: usize, reaches: &[Reach]) -> Place {
         let strip = self.start_y[lane] >> STRIP_SHIFT;
         Place::of(strip, self.least[lane], self.greatest[lane], strips, reaches)
+    }
+
+    /// One that keeps to a strip, or has no more rows than a strip.
+    #[inline(always)]
+    fn line(&self, lane: usize) -> PieceLine {
+        PieceLine {
+            below: self.start_y[lane] & ((1 << STRIP_SHIFT) - 1),
+            height: self.height[lane],
+            start: self.start[lane],
+            slant: self.slant(lane),
+        }
     }
 
     #[inline(always)]

@@ -88,6 +88,13 @@ impl Accumulator {
         self.strips.iter_mut().for_each(|strip| strip.wide.clear());
     }
 
+    /// The accumulators of strip `index` and the next.
+    #[inline(always)]
+    pub(super) fn pair(&mut self, index: usize) -> Option<[&mut Strip; 2]> {
+        let [upper, lower] = self.strips.get_mut(index..)?.first_chunk_mut::<2>()?;
+        Some([upper, lower])
+    }
+
     /// The accumulator of strip `index`, or `None` past the last.
     #[inline(always)]
     pub(crate) fn strip(&mut self, index: usize) -> Option<&mut Strip> {
@@ -96,6 +103,12 @@ impl Accumulator {
 }
 
 impl Strip {
+    /// Three columns from `first` on.
+    #[inline(always)]
+    pub(super) fn three(&mut self, first: usize) -> Option<&mut [Column; 3]> {
+        self.columns.get_mut(first..)?.first_chunk_mut::<3>()
+    }
+
     /// Marks the blocks that hold two columns as occupied: all between, if they are at most a block apart.
     #[inline(always)]
     pub(crate) fn occupy_pair(&mut self, first: usize, last: usize) {

@@ -12,10 +12,13 @@
 //! was rounded. Pieces of three columns and more have a shorter formula ([`add_columns`]), by which pixels that a part has passed
 //! in a row while the piece goes on in others are right to some 2^-17 of their area.
 //!
+//! Edges of at most eight rows are reckoned in one go even where they reach into a second strip: lanes are rows modulo eight. Taller ones are cut at the
+//! strips' tops.
+//!
 //! Slope and steepness are the whole edge's; where it enters and leaves a strip is rounded to 1/4096 pixel.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::{f32x8, i32x8, mask32x8};
 
 use super::batch::add_edges;
 use super::bins::Edges;
@@ -72,6 +75,12 @@ impl Reach {
         (first as i32) << FINE_SHIFT >= self.low && (last as i32) << FINE_SHIFT < self.high
     }
 
+    /// Whether nothing up to a position (24.8 fixed point) matters but that it winds around what does.
+    #[inline(always)]
+    fn starts_after(self, greatest: i32) -> bool {
+        greatest << (FINE_SHIFT - fixed::SHIFT) < self.low
+    }
+
     /// The first and the end of the columns that matter.
     #[inline(always)]
     pub(super) fn to_columns(self) -> (i32, i32) {
@@ -116,6 +125,14 @@ pub(super) fn add_downward<S: Simd>(
     reaches: &[Reach],
 ) {
     let slant = Slant::new(edge);
+    let (x0, y0, x1, y1, _) = edge;
+    let (least, greatest) = (x0.min(x1), x0.max(x1));
+    if is_across((x0 >> fixed::SHIFT, x1 >> fixed::SHIFT), (y0 - top, y1 - top)) {
+        let start = (x0 - (least >> fixed::SHIFT << fixed::SHIFT)) as f32;
+        let line = PieceLine { below: (y0 - top) & ((1 << STRIP_SHIFT) - 1), height: y1 - y0, start, slant };
+        add_across(simd, cells, (y0 - top) >> STRIP_SHIFT, strips, line, (least, greatest), reaches);
+        return;
+    }
     for_strip_parts(
         edge,
         top,
@@ -123,6 +140,98 @@ pub(super) fn add_downward<S: Simd>(
         #[inline(always)]
         |index, start, end| add_strip_part(simd, cells, index, start, end, slant, top, reaches),
     );
+}
+
+/// Whether an edge between two columns and two y, from a strip's top, reaches into a second strip and is reckoned in one go all the same.
+#[inline(always)]
+fn is_across((from, to): (i32, i32), (start_y, end_y): (i32, i32)) -> bool {
+    let rows = ((end_y - 1) >> fixed::SHIFT) - (start_y >> fixed::SHIFT);
+    let columns = from.abs_diff(to) as usize;
+    start_y >> STRIP_SHIFT != (end_y - 1) >> STRIP_SHIFT
+        && rows < BLOCK_HEIGHT as i32
+        && !is_flat(0, columns, end_y - start_y)
+}
+
+/// Adds an edge of at most eight rows, between two x (24.8 fixed point), which starts in `strip` (counted from the band's top) and ends in
+/// the next.
+#[inline(always)]
+pub(super) fn add_across<S: Simd>(
+    simd: S,
+    cells: &mut Accumulator,
+    strip: i32,
+    strips: usize,
+    line: PieceLine,
+    (least, greatest): (i32, i32),
+    reaches: &[Reach],
+) {
+    let (first, last) = ((least >> fixed::SHIFT) as usize, (greatest >> fixed::SHIFT) as usize);
+    let whole_rows = line.below & !(fixed::ONE - 1);
+    // Rows above the one in which it starts are those of the next strip.
+    let offsets = (RowParts::tops(simd) - whole_rows) & ((1 << STRIP_SHIFT) - 1);
+    let parts = RowParts::in_rows(simd, line, offsets - (line.below - whole_rows));
+    let upper = RowParts::tops(simd).simd_ge(whole_rows);
+    let is_seen = |strip: i32| reaches.get(strip as usize).is_none_or(|reach| reach.holds(least, greatest));
+    if strip >= 0 && (strip + 1) < strips as i32 && is_seen(strip) && is_seen(strip + 1) {
+        if let Some(pair) = cells.pair(strip as usize) {
+            add_parts_across(simd, pair, upper, parts, first, last);
+        }
+        return;
+    }
+    for (index, rows) in [(strip, upper), (strip + 1, !upper)] {
+        // Above the band the strip is negative, which no index is.
+        let index = index as usize;
+        let Some(strip) = cells.strip(index).filter(|_| index < strips) else { continue };
+        let parts = parts.only(simd, rows);
+        match reaches.get(index) {
+            Some(reach) if reach.ends_before(least) => {}
+            Some(reach) if reach.starts_after(greatest) => {
+                let column = (reach.low >> FINE_SHIFT) as usize;
+                strip.occupy_pair(column, column);
+                if let Some(column) = strip.columns.get_mut(column) {
+                    add_to(simd, column, parts.total);
+                }
+            }
+            _ => add_row_parts(simd, strip, parts, first, last),
+        }
+    }
+}
+
+/// Adds parts that lie in columns `first ..= last` to two strips, those of the rows of `upper` to the former.
+#[inline(always)]
+fn add_parts_across<S: Simd>(
+    simd: S,
+    [above, below]: [&mut Strip; 2],
+    upper: mask32x8<S>,
+    row: RowParts<S>,
+    first: usize,
+    last: usize,
+) {
+    let zero = i32x8::splat(simd, 0);
+    if last - first <= 1 {
+        above.occupy_pair(first, last + 1);
+        below.occupy_pair(first, last + 1);
+        if let (Some(above), Some(below)) = (above.three(first), below.three(first)) {
+            let RowParts { left, right, steep, beyond, total } = row;
+            let values = two_columns(simd, left, right, steep, beyond, total);
+            for ((value, above), below) in values.into_iter().zip(above).zip(below) {
+                add_to(simd, above, upper.select(value, zero));
+                add_to(simd, below, upper.select(zero, value));
+            }
+        }
+        return;
+    }
+    above.occupy(first, last + 1);
+    below.occupy(first, last + 1);
+    if let (Some(above), Some(below)) = (above.columns.get_mut(first..last + 2), below.columns.get_mut(first..last + 2))
+    {
+        let mut walk = ColumnWalk::new(simd, &row);
+        let last = above.len() - 1;
+        for (index, (above, below)) in above.iter_mut().zip(below).enumerate() {
+            let value = if index < last { walk.next(simd) } else { walk.rest() };
+            add_to(simd, above, upper.select(value, zero));
+            add_to(simd, below, upper.select(zero, value));
+        }
+    }
 }
 
 /// Calls `part` with each of the strips below `top` that an edge (as [`Edge::downward`] gives it) crosses, and with where it starts and ends there: x in
@@ -207,7 +316,7 @@ fn add_piece<S: Simd>(
 pub(super) fn add_row_parts<S: Simd>(simd: S, cells: &mut Strip, row: RowParts<S>, first: usize, last: usize) {
     if last - first <= 1 {
         cells.occupy_pair(first, last + 1);
-        if let Some(columns) = cells.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) {
+        if let Some(columns) = cells.three(first) {
             add_two_columns(simd, columns, row);
         }
     } else {
@@ -310,9 +419,33 @@ impl<S: Simd> RowParts<S> {
 
     /// The parts of a piece.
     #[inline(always)]
-    pub(super) fn of(simd: S, PieceLine { below, height, start, slant }: PieceLine) -> Self {
+    pub(super) fn of(simd: S, line: PieceLine) -> Self {
+        let rows = Self::tops(simd) - line.below;
+        Self::in_rows(simd, line, rows)
+    }
+
+    /// How far below a strip's top its rows start.
+    #[inline(always)]
+    fn tops(simd: S) -> i32x8<S> {
+        i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792])
+    }
+
+    /// Of the parts those in some rows.
+    #[inline(always)]
+    fn only(self, simd: S, rows: mask32x8<S>) -> Self {
+        let (zero, nothing) = (f32x8::splat(simd, 0.0), i32x8::splat(simd, 0));
+        Self {
+            steep: rows.select(self.steep, zero),
+            beyond: rows.select(self.beyond, zero),
+            total: rows.select(self.total, nothing),
+            ..self
+        }
+    }
+
+    /// The parts of a piece in rows that start so far below it.
+    #[inline(always)]
+    fn in_rows(simd: S, PieceLine { height, start, slant, .. }: PieceLine, rows: i32x8<S>) -> Self {
         let Slant { slope, steep, winding } = slant;
-        let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) - below;
         let zero = i32x8::splat(simd, 0);
         let limit = i32x8::splat(simd, height);
         let upper = min_i32(max_i32(rows, zero), limit);
@@ -373,22 +506,51 @@ pub(super) fn two_columns<S: Simd>(
 /// formula above, and what lies right of x_right, in one.
 #[inline(always)]
 fn add_columns<S: Simd>(simd: S, columns: &mut [Column], row: RowParts<S>) {
-    let RowParts { left, right, steep, total, .. } = row;
-    let zero = f32x8::splat(simd, 0.0);
-    let whole = f32x8::splat(simd, 256.0);
-    let (mut from_left, mut from_right) = (whole - left, whole - right);
-    let (mut before, mut area) = (zero, i32x8::splat(simd, RAISED));
     let Some((spill, columns)) = columns.split_last_mut() else { return };
+    let mut walk = ColumnWalk::new(simd, &row);
     for column in columns {
-        let (u, w) = (greater_f32(from_left, zero), greater_f32(from_right, zero));
-        let up_to_here = steep * (u - w) * (u + w);
-        let here = round_raised_f32(up_to_here - before);
-        add_to(simd, column, here - area);
-        (before, area) = (up_to_here, here);
-        from_left += whole;
-        from_right += whole;
+        add_to(simd, column, walk.next(simd));
     }
-    add_to(simd, spill, total + RAISED - area);
+    add_to(simd, spill, walk.rest());
+}
+
+/// What parts add to one column after another.
+struct ColumnWalk<S: Simd> {
+    from_left: f32x8<S>,
+    from_right: f32x8<S>,
+    steep: f32x8<S>,
+    total: i32x8<S>,
+    before: f32x8<S>,
+    area: i32x8<S>,
+}
+
+impl<S: Simd> ColumnWalk<S> {
+    #[inline(always)]
+    fn new(simd: S, row: &RowParts<S>) -> Self {
+        let whole = f32x8::splat(simd, 256.0);
+        let (before, area) = (f32x8::splat(simd, 0.0), i32x8::splat(simd, RAISED));
+        let (from_left, from_right) = (whole - row.left, whole - row.right);
+        Self { from_left, from_right, steep: row.steep, total: row.total, before, area }
+    }
+
+    #[inline(always)]
+    fn next(&mut self, simd: S) -> i32x8<S> {
+        let (zero, whole) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 256.0));
+        let (u, w) = (greater_f32(self.from_left, zero), greater_f32(self.from_right, zero));
+        let up_to_here = self.steep * (u - w) * (u + w);
+        let here = round_raised_f32(up_to_here - self.before);
+        let value = here - self.area;
+        (self.before, self.area) = (up_to_here, here);
+        self.from_left += whole;
+        self.from_right += whole;
+        value
+    }
+
+    /// What is left for the column after the last.
+    #[inline(always)]
+    fn rest(&self) -> i32x8<S> {
+        self.total + RAISED - self.area
+    }
 }
 
 impl Strip {
