@@ -12,6 +12,7 @@ mod outline;
 pub(crate) mod polygons;
 pub(crate) mod round_rect;
 mod shapes;
+mod steps;
 pub(crate) mod stroke;
 mod stroke_style;
 #[cfg(feature = "svg")]

@@ -1,8 +1,10 @@
 //! The pen and the two contours that it leaves beside a line.
 
 use super::flatten::PolygonSink;
+use super::steps::{Coefficients, Curve, Nib, Steps};
 use super::{LineCap, LineJoin, Stroke};
 use crate::geom::{Point, Transform};
+use crate::num::level::{SimdLevel, dispatch};
 
 /// The longest miter that is drawn, as a multiple of half the width, whatever the limit asks for: at
 /// sharper corners `f32` no longer knows the direction of the tip.
@@ -198,6 +200,9 @@ pub(super) struct Outliner<'a, A: PointMap, K: PolygonSink> {
     after: A,
     sink: &'a mut K,
     right: &'a mut Vec<Point>,
+    /// Memory for the steps of a curve, and the level at which they are found.
+    steps: &'a mut Steps,
+    level: SimdLevel,
     closed: bool,
     /// Whether a polygon is begun in the sink.
     begun: bool,
@@ -213,7 +218,13 @@ pub(super) struct Outliner<'a, A: PointMap, K: PolygonSink> {
 }
 
 impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
-    pub(super) fn new(pen: Pen, after: A, right: &'a mut Vec<Point>, sink: &'a mut K) -> Self {
+    pub(super) fn new(
+        level: SimdLevel,
+        pen: Pen,
+        after: A,
+        (right, steps): (&'a mut Vec<Point>, &'a mut Steps),
+        sink: &'a mut K,
+    ) -> Self {
         right.clear();
         let none = (Point::ZERO, 0.0);
         Self {
@@ -221,6 +232,8 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
             after,
             sink,
             right,
+            steps,
+            level,
             closed: false,
             begun: false,
             start: Point::ZERO,
@@ -260,6 +273,7 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
     pub(super) fn cubic(&mut self, c1: Point, c2: Point, end: Point) {
         /// No curve is cut finer.
         const FINEST: f32 = 1.0 / 4096.0;
+        const FEW_STEPS: f32 = 1.0 / 4.0;
         let origin = self.at;
         if !(farthest_of([origin, c1, c2, end]) < 1e15) {
             return self.cubic_of_extremes(c1, c2, end);
@@ -277,6 +291,13 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
         // looks at the ends of a step alone: this bounds its error to twice the tolerance.
         let longest_step = (16.0 * tolerance / bend).sqrt();
         let longest_step = if longest_step < 1.0 { longest_step } else { 1.0 };
+
+        let nib = Nib { radius, tolerance, turn_radius: self.pen.turn_radius, turn: self.pen.turn, longest_step };
+        let calm = Curve { origin, end, coefficients: curve, start_direction, end_direction };
+        // A curve of a few steps is walked sooner than looked at.
+        if longest_step < FEW_STEPS && dispatch!(self.level, simd => self.steps.find(simd, &calm, &nib)) {
+            return self.take_steps(&calm);
+        }
 
         let mut t = 0.0_f32;
         let mut p = origin;
@@ -355,6 +376,21 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
             step = (8.0 * tolerance / density).sqrt();
         }
         self.at = end;
+    }
+
+    /// Walks along a calm curve.
+    #[inline(always)]
+    fn take_steps(&mut self, curve: &Curve) {
+        let count = self.steps.count();
+        let length = |steps: &Steps, to: usize| (steps.position(to) - steps.position(to - 1)).length();
+        self.depart(curve.start_direction, length(self.steps, 1));
+        for step in 1..count {
+            let (left, right) = self.steps.points(step);
+            self.left(left);
+            self.right(right);
+        }
+        self.last = (curve.end_direction, length(self.steps, count));
+        self.at = curve.end;
     }
 
     /// A cubic with coordinates whose products overflow: lines between points evenly spaced in t.
@@ -624,40 +660,6 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
     #[inline(always)]
     fn right(&mut self, p: Point) {
         self.right.push(self.after.map_point(p));
-    }
-}
-
-/// A cubic as a polynomial, relative to its first point.
-struct Coefficients {
-    a: Point,
-    b: Point,
-    c: Point,
-}
-
-impl Coefficients {
-    fn new(e1: Point, e2: Point, e3: Point) -> Self {
-        Self { a: e3 - e2 * 3.0 + e1 * 3.0, b: e2 * 3.0 - e1 * 6.0, c: e1 * 3.0 }
-    }
-
-    #[inline(always)]
-    fn position(&self, t: f32) -> Point {
-        ((self.a * t + self.b) * t + self.c) * t
-    }
-
-    #[inline(always)]
-    fn velocity(&self, t: f32) -> Point {
-        (self.a * (3.0 * t) + self.b * 2.0) * t + self.c
-    }
-
-    #[inline(always)]
-    fn acceleration(&self, t: f32) -> Point {
-        self.a * (6.0 * t) + self.b * 2.0
-    }
-
-    /// The greatest |C″|: it is linear in t, so at an end.
-    fn greatest_bend(&self) -> f32 {
-        let (start, end) = (self.acceleration(0.0).length(), self.acceleration(1.0).length());
-        if start > end { start } else { end }
     }
 }
 

@@ -13,18 +13,30 @@ use super::dash::{self, DashScratch};
 use super::far;
 use super::flatten::PolygonSink;
 use super::outline::{LONGEST_MITER, Outliner, Pen, PointMap, Unmapped};
+use super::steps::Steps;
 use super::{Segment, Stroke};
 use crate::geom::{Point, Rect, Transform};
+use crate::num::level::SimdLevel;
 
 /// No polygon point is farther out than this; a stroke that could have one draws nothing.
 const FARTHEST: f32 = 1e37;
 
 /// Memory that strokes reuse; after the first few strokes nothing more is allocated.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct StrokeScratch {
+    /// The level at which curves are looked at.
+    pub(crate) level: SimdLevel,
     /// The right contour of the subpath in work, in device pixels.
     right: Vec<Point>,
+    steps: Steps,
     dash: DashScratch,
+}
+
+impl Default for StrokeScratch {
+    fn default() -> Self {
+        let (right, steps, dash) = Default::default();
+        Self { level: SimdLevel::best(), right, steps, dash }
+    }
 }
 
 /// Writes the outline of a stroked path to `sink`: polygons in device pixels whose nonzero fill is the
@@ -122,7 +134,7 @@ impl<'a> Job<'a> {
         scratch: &mut StrokeScratch,
         sink: &mut K,
     ) {
-        let mut outliner = Outliner::new(*pen, after, &mut scratch.right, sink);
+        let mut outliner = Outliner::new(scratch.level, *pen, after, (&mut scratch.right, &mut scratch.steps), sink);
         if let Some(dash) = &self.style.dash
             && dash::dash(self, dash, before, &mut scratch.dash, &mut outliner)
         {

@@ -65,6 +65,7 @@ impl Chunk {
         level: SimdLevel,
     ) {
         self.bins.reset(bands, height_shift);
+        self.stroke.level = level;
         dispatch!(level, simd => self.prepare_with(simd, list, plan, range, frame));
     }
 
