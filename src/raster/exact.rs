@@ -12,7 +12,8 @@
 //! Crossings are rounded to 1/256 pixel, as corners are. The order is that in the middle between two such heights, and windings
 //! are counted along it, so that they always add up: what rounding may change is some 2^-17 of a pixel, never a row.
 
-use fearless_simd::Simd;
+use fearless_simd::i32x8;
+use fearless_simd::prelude::*;
 
 use super::edge::FixedPoint;
 use super::simple::Side;
@@ -30,10 +31,10 @@ const NEVER: i32 = i32::MAX;
 /// Working memory, and the pieces of the shape in work.
 #[derive(Debug, Default)]
 pub(super) struct Resolver {
-    /// From left to right.
-    active: Vec<Active>,
+    active: Row,
     /// The height at which each of them ends or crosses the next one.
     next: Vec<i32>,
+    touched: Touched,
     /// How many looks are left.
     looks: usize,
     /// Where each piece starts and ends.
@@ -55,18 +56,123 @@ struct Active {
     since: i32,
 }
 
-/// The active edges to which something happens: all from the first to the last.
+/// How many heights come before the first that is `y`.
+#[inline(always)]
+fn first_at<S: Simd>(simd: S, heights: &[i32], y: i32) -> usize {
+    let (eights, rest) = heights.as_chunks::<8>();
+    for (index, eight) in eights.iter().enumerate() {
+        let here = i32x8::load_array_ref(simd, eight).simd_eq(y).to_bitmask() as u32;
+        if here != 0 {
+            return 8 * index + here.trailing_zeros() as usize;
+        }
+    }
+    8 * eights.len() + rest.iter().position(|height| *height == y).unwrap_or(rest.len())
+}
+
+/// The active edges from left to right, and where each of them is kept: order changes all the time, and moves numbers alone.
+#[derive(Debug, Default)]
+struct Row {
+    order: Vec<u32>,
+    edges: Vec<Active>,
+    /// Places in `edges` of such as have left.
+    free: Vec<u32>,
+}
+
+impl Row {
+    fn clear(&mut self) {
+        self.order.clear();
+        self.edges.clear();
+        self.free.clear();
+    }
+
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    #[inline(always)]
+    fn get(&self, index: usize) -> Option<&Active> {
+        self.edges.get(*self.order.get(index)? as usize)
+    }
+
+    #[inline(always)]
+    fn get_mut(&mut self, index: usize) -> Option<&mut Active> {
+        self.edges.get_mut(*self.order.get(index)? as usize)
+    }
+
+    #[inline(always)]
+    fn insert(&mut self, index: usize, edge: Active) {
+        let place = match self.free.pop() {
+            Some(place) => {
+                if let Some(old) = self.edges.get_mut(place as usize) {
+                    *old = edge;
+                }
+                place
+            }
+            None => {
+                self.edges.push(edge);
+                self.edges.len() as u32 - 1
+            }
+        };
+        self.order.insert(index, place);
+    }
+
+    /// The first edge of which `is_left` does not hold, which holds of all before it.
+    #[inline(always)]
+    fn partition_point(&self, is_left: impl Fn(&Active) -> bool) -> usize {
+        self.order.partition_point(|place| self.edges.get(*place as usize).is_some_and(&is_left))
+    }
+}
+
+/// Active edges side by side to which something happens: from the first to the last.
 #[derive(Clone, Copy, Debug)]
-struct Touched {
+struct Range {
     first: usize,
     last: usize,
 }
 
+/// All of those at one height. Many things happen at once, but far from each other.
+#[derive(Debug, Default)]
+struct Touched {
+    ranges: Vec<Range>,
+}
+
 impl Touched {
+    /// Adds an edge that lies right of those added before, or is next to them.
     #[inline(always)]
     fn add(&mut self, index: usize) {
-        self.first = self.first.min(index);
-        self.last = self.last.max(index);
+        match self.ranges.last_mut() {
+            Some(range) if index <= range.last + 1 => {
+                range.first = range.first.min(index);
+                range.last = range.last.max(index);
+            }
+            _ => self.ranges.push(Range { first: index, last: index }),
+        }
+    }
+
+    /// Adds an edge that was put in before the edge that was number `index`.
+    #[inline(always)]
+    fn add_new(&mut self, index: usize) {
+        for range in &mut self.ranges {
+            range.first += usize::from(range.first >= index);
+            range.last += usize::from(range.last >= index);
+        }
+        self.ranges.push(Range { first: index, last: index });
+    }
+
+    /// Puts ranges in order, and those together that meet.
+    #[inline(always)]
+    fn merge(&mut self) {
+        if !self.ranges.is_sorted_by(|a, b| a.last + 1 < b.first) {
+            self.ranges.sort_unstable_by_key(|range| range.first);
+            self.ranges.dedup_by(|next, range| {
+                let meets = next.first <= range.last + 1;
+                if meets {
+                    range.last = range.last.max(next.last);
+                }
+                meets
+            });
+        }
     }
 }
 
@@ -155,8 +261,8 @@ impl Resolver {
         let found = simd.vectorize(
             #[inline(always)]
             || match rule {
-                FillRule::NonZero => self.sweep::<false>(points, sides),
-                FillRule::EvenOdd => self.sweep::<true>(points, sides),
+                FillRule::NonZero => self.sweep::<S, false>(simd, points, sides),
+                FillRule::EvenOdd => self.sweep::<S, true>(simd, points, sides),
             },
         );
         found.unwrap_or(false)
@@ -169,7 +275,7 @@ impl Resolver {
 
     /// Whether edges had to be cut, left out or turned round; `None` where that takes too long.
     #[inline(always)]
-    fn sweep<const EVEN_ODD: bool>(&mut self, points: &[FixedPoint], sides: &[Side]) -> Option<bool> {
+    fn sweep<S: Simd, const EVEN_ODD: bool>(&mut self, simd: S, points: &[FixedPoint], sides: &[Side]) -> Option<bool> {
         self.active.clear();
         self.next.clear();
         self.pieces.clear();
@@ -184,22 +290,24 @@ impl Resolver {
             if y == NEVER {
                 break;
             }
-            let mut touched = Touched { first: usize::MAX, last: 0 };
+            self.touched.ranges.clear();
             if event == y {
-                self.go_on(points, y, &mut touched);
-                self.arrange(y, &mut touched);
+                self.go_on(simd, points, y);
+                self.arrange(y);
             }
             while let [side, rest @ ..] = coming
                 && side.from.y == y
             {
-                self.insert(*side, &mut touched);
+                self.insert(*side);
                 coming = rest;
             }
             self.spend(1 + self.active.len() / 8);
-            if touched.first <= touched.last {
-                self.spend(3 + touched.last - touched.first);
-                self.look_ahead(y, touched);
-                self.apply::<EVEN_ODD>(y, touched, &mut same, &mut reversed);
+            self.touched.merge();
+            for index in 0..self.touched.ranges.len() {
+                let Some(range) = self.touched.ranges.get(index).copied() else { break };
+                self.spend(3 + range.last - range.first);
+                self.look_ahead(y, range);
+                self.apply::<EVEN_ODD>(y, range, &mut same, &mut reversed);
             }
             if self.looks == 0 {
                 return None;
@@ -216,30 +324,28 @@ impl Resolver {
 
     /// Goes on from edges that end at `y`.
     #[inline(always)]
-    fn go_on(&mut self, points: &[FixedPoint], y: i32, touched: &mut Touched) {
-        let Self { active, next, pieces, .. } = self;
+    fn go_on<S: Simd>(&mut self, simd: S, points: &[FixedPoint], y: i32) {
+        let Self { active, next, pieces, touched, .. } = self;
         let (mut index, mut kept) = (0_usize, 0_usize);
         while index < active.len() {
             // Mostly nothing happens to many side by side.
-            if let Some(ahead) = next.get(index..).and_then(|rest| rest.first_chunk::<16>())
-                && !ahead.iter().fold(false, |any, event| any | (*event == y))
-            {
+            let run = first_at(simd, next.get(index..).unwrap_or(&[]), y);
+            if run > 0 {
                 if kept < index {
-                    active.copy_within(index..index + 16, kept);
-                    next.copy_within(index..index + 16, kept);
+                    active.order.copy_within(index..index + run, kept);
+                    next.copy_within(index..index + run, kept);
                 }
-                (index, kept) = (index + 16, kept + 16);
+                (index, kept) = (index + run, kept + run);
                 continue;
             }
-            if next.get(index) == Some(&y)
-                && let Some(edge) = active.get_mut(index)
-            {
+            if let Some(edge) = active.get_mut(index) {
                 let (mut is_alone, mut last) = (false, kept + 1);
                 if edge.side.to.y == y {
                     edge.finish(y, pieces);
                     if !edge.advance(points) {
                         touched.add(kept.saturating_sub(1));
                         touched.add(kept);
+                        active.free.extend(active.order.get(index));
                         index += 1;
                         continue;
                     }
@@ -257,36 +363,47 @@ impl Resolver {
                 }
             }
             if kept < index {
-                active.copy_within(index..=index, kept);
+                active.order.copy_within(index..=index, kept);
                 next.copy_within(index..=index, kept);
             }
             (index, kept) = (index + 1, kept + 1);
         }
-        active.truncate(kept);
+        active.order.truncate(kept);
         next.truncate(kept);
     }
 
     /// Puts the touched edges in their order just below `y`.
     #[inline(always)]
-    fn arrange(&mut self, y: i32, touched: &mut Touched) {
+    fn arrange(&mut self, y: i32) {
+        for number in 0..self.touched.ranges.len() {
+            let Some(mut range) = self.touched.ranges.get(number).copied() else { break };
+            self.arrange_range(y, &mut range);
+            if let Some(arranged) = self.touched.ranges.get_mut(number) {
+                *arranged = range;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn arrange_range(&mut self, y: i32, range: &mut Range) {
         let half = 2 * y + 1;
-        let mut index = touched.first.max(1);
+        let mut index = range.first.max(1);
         while let (Some(before), Some(edge)) = (self.active.get(index - 1), self.active.get(index)) {
             let x = edge.x_at(half);
             if before.x_at(half) > x {
-                let place = self.active.get(..index - 1).unwrap_or(&[]).iter().rposition(|other| other.x_at(half) <= x);
-                let place = place.map_or(0, |place| place + 1);
+                let is_left = |place: &usize| self.active.get(*place).is_none_or(|other| other.x_at(half) <= x);
+                let place = (0..index - 1).rev().find(is_left).map_or(0, |place| place + 1);
                 // Mostly two change places.
                 self.spend(index - place);
                 if self.looks == 0 {
                     return;
                 }
-                for index in (place..index).rev() {
-                    self.active.swap(index, index + 1);
+                if let Some(moved) = self.active.order.get_mut(place..=index) {
+                    moved.rotate_right(1);
                 }
-                touched.add(place);
-                touched.add(index);
-            } else if index > touched.last {
+                range.first = range.first.min(place);
+                range.last = range.last.max(index);
+            } else if index > range.last {
                 break;
             }
             index += 1;
@@ -295,7 +412,7 @@ impl Resolver {
 
     /// Puts an edge that starts among those that are in order.
     #[inline(always)]
-    fn insert(&mut self, side: Side, touched: &mut Touched) {
+    fn insert(&mut self, side: Side) {
         let edge = Active::new(side);
         let half = 2 * side.from.y + 1;
         let x = edge.x_at(half);
@@ -303,32 +420,31 @@ impl Resolver {
         self.spend((self.active.len() - place) / 8);
         self.active.insert(place, edge);
         self.next.insert(place, NEVER);
-        if place <= touched.last {
-            touched.last += 1;
-        }
-        touched.add(place);
+        self.touched.add_new(place);
     }
 
     /// Finds what happens next to the touched edges and the one left of them.
     #[inline(always)]
-    fn look_ahead(&mut self, y: i32, touched: Touched) {
+    fn look_ahead(&mut self, y: i32, touched: Range) {
         let first = touched.first.saturating_sub(1);
-        let (edges, nexts) = (self.active.get(first..).unwrap_or(&[]), self.next.get_mut(first..).unwrap_or(&mut []));
-        for (index, next) in nexts.iter_mut().enumerate().take(touched.last + 1 - first) {
-            let Some(edge) = edges.get(index) else { break };
-            let crossing = edges.get(index + 1).map_or(NEVER, |other| edge.crossing(other, y));
+        let nexts = self.next.get_mut(first..).unwrap_or(&mut []);
+        for (index, next) in (first..=touched.last).zip(nexts) {
+            let Some(edge) = self.active.get(index) else { break };
+            let crossing = self.active.get(index + 1).map_or(NEVER, |other| edge.crossing(other, y));
             *next = edge.side.to.y.min(crossing);
         }
     }
 
     /// Applies the fill rule to the windings between the edges from `y` on.
     #[inline(always)]
-    fn apply<const EVEN_ODD: bool>(&mut self, y: i32, touched: Touched, same: &mut bool, reversed: &mut bool) {
+    fn apply<const EVEN_ODD: bool>(&mut self, y: i32, touched: Range, same: &mut bool, reversed: &mut bool) {
         let is_inside = |winding: i32| if EVEN_ODD { winding & 1 } else { (winding != 0) as i32 };
         let before = touched.first.checked_sub(1).and_then(|index| self.active.get(index));
         let mut winding = before.map_or(0, |edge| edge.left + edge.winding);
         let mut inside = is_inside(winding);
-        for (index, edge) in self.active.iter_mut().enumerate().skip(touched.first) {
+        let Self { active: Row { order, edges, .. }, pieces, .. } = self;
+        for (index, place) in order.iter().enumerate().skip(touched.first) {
+            let Some(edge) = edges.get_mut(*place as usize) else { break };
             if index > touched.last && edge.left == winding {
                 break;
             }
@@ -340,7 +456,7 @@ impl Resolver {
             *same &= bounds == edge.winding;
             *reversed &= bounds == -edge.winding;
             if bounds != edge.bounds {
-                edge.finish(y, &mut self.pieces);
+                edge.finish(y, pieces);
                 edge.bounds = bounds;
             }
         }
