@@ -8,7 +8,9 @@
 use fearless_simd::i32x8;
 use fearless_simd::prelude::*;
 
+use super::batch::coordinates;
 use super::edge::FixedPoint;
+use crate::num::lanes::{max_i32, min_i32};
 
 /// Outlines of more corners are not looked at: comparisons grow with their square.
 const MOST_CORNERS: usize = 384;
@@ -31,6 +33,8 @@ struct Eight {
     first: usize,
     /// The first and the last edge of their outline, which meet as well.
     ends: (usize, usize),
+    /// Whether all go the same way across and the same way down, and so do not meet each other. Not known of fewer than eight.
+    is_monotone: bool,
 }
 
 /// A box with its sides.
@@ -73,7 +77,7 @@ impl Apart {
         self.outlines.clear();
         let mut start = 0;
         for end in ends {
-            if !self.list(points.get(start..*end).unwrap_or(&[])) {
+            if !self.list(simd, points.get(start..*end).unwrap_or(&[])) {
                 return false;
             }
             start = *end;
@@ -83,7 +87,7 @@ impl Apart {
 
     /// Lists the edges of an outline; false if it lies too far out.
     #[inline(always)]
-    fn list(&mut self, points: &[FixedPoint]) -> bool {
+    fn list<S: Simd>(&mut self, simd: S, points: &[FixedPoint]) -> bool {
         let Some(origin) = points.first() else { return true };
         let mut far = false;
         for point in points {
@@ -115,7 +119,10 @@ impl Apart {
         let mut bounds = Bounds::EMPTY;
         let corners = self.corners.get(first..).unwrap_or(&[]);
         for (index, edges) in (first..).step_by(8).zip(corners.windows(9).step_by(8).chain(rest_of(corners))) {
-            let eight = Eight::new(edges, index, (first, last - 1));
+            let eight = match edges.first_chunk::<9>() {
+                Some(edges) => Eight::whole(simd, edges, index, (first, last - 1)),
+                None => Eight::new(edges, index, (first, last - 1)),
+            };
             bounds = bounds.with(eight.around);
             self.eights.push(eight);
         }
@@ -129,7 +136,7 @@ impl Apart {
         let Self { corners, eights, .. } = self;
         for (index, own) in eights.iter().enumerate() {
             for (distance, others) in eights.get(index..).unwrap_or(&[]).iter().enumerate() {
-                if !own.around.meets(others.around) {
+                if distance == 0 && own.is_monotone || !own.around.meets(others.around) {
                     continue;
                 }
                 let mut lanes = own.near(simd, others.around);
@@ -137,13 +144,17 @@ impl Apart {
                     let lane = lanes.trailing_zeros() as usize;
                     lanes &= lanes - 1;
                     let mut near = others.near(simd, own.bounds(lane));
+                    // Edges that follow each other meet in their corner. If one went back along the other, it would end on it, or pass
+                    // over its start: then it meets the edge after or before the two.
                     if distance == 0 {
-                        near &= !1 << lane;
+                        near &= !3 << lane;
+                    } else if distance == 1 && lane == 7 && own.ends == others.ends {
+                        near &= !1;
                     }
                     while near != 0 {
                         let (edge, other) = (own.first + lane, others.first + near.trailing_zeros() as usize);
                         near &= near - 1;
-                        if meet(corners, edge, other, own.ends) {
+                        if (edge, other) != own.ends && meet(corners, edge, other) {
                             return false;
                         }
                     }
@@ -209,6 +220,7 @@ impl Eight {
             around: Bounds::EMPTY,
             first,
             ends,
+            is_monotone: false,
         };
         let Self { left, top, right, bottom, around, .. } = &mut eight;
         let sides = left.iter_mut().zip(top).zip(right.iter_mut().zip(bottom));
@@ -219,6 +231,23 @@ impl Eight {
             *around = around.with(Bounds { left: *left, top: *top, right: *right, bottom: *bottom });
         }
         eight
+    }
+
+    /// Those between nine corners.
+    #[inline(always)]
+    fn whole<S: Simd>(simd: S, corners: &[FixedPoint; 9], first: usize, ends: (usize, usize)) -> Self {
+        let [start @ .., _] = corners;
+        let [_, end @ ..] = corners;
+        let ((from_x, from_y), (to_x, to_y)) = (coordinates(simd, start), coordinates(simd, end));
+        let (left, right) = (min_i32(from_x, to_x), max_i32(from_x, to_x));
+        let (top, bottom) = (min_i32(from_y, to_y), max_i32(from_y, to_y));
+        let same = |a: i32x8<S>, b: i32x8<S>| matches!(a.simd_ge(b).to_bitmask() as u32, 0 | 0xff);
+        let is_monotone = same(to_x, from_x) && same(to_y, from_y);
+        let (left, right, top, bottom) = (left.to_array(), right.to_array(), top.to_array(), bottom.to_array());
+        let least = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.min(b).min(c.min(d)).min(e.min(f).min(g.min(h)));
+        let greatest = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)));
+        let around = Bounds { left: least(left), top: least(top), right: greatest(right), bottom: greatest(bottom) };
+        Self { left, top, right, bottom, around, first, ends, is_monotone }
     }
 
     /// The box of edge `lane`.
@@ -272,23 +301,11 @@ fn cross(a: FixedPoint, b: FixedPoint, c: FixedPoint) -> i64 {
     bx * cy - by * cx
 }
 
-/// Whether two edges have a point in common, or lie on one line; for those that follow each other, one besides their corner.
-/// `ends` are the first and the last of the earlier one's outline.
+/// Whether two edges have a point in common, or lie on one line.
 #[inline(always)]
-fn meet(corners: &[FixedPoint], edge: usize, other: usize, ends: (usize, usize)) -> bool {
+fn meet(corners: &[FixedPoint], edge: usize, other: usize) -> bool {
     let ends_of = |edge: usize| corners.get(edge..).and_then(|rest| rest.first_chunk::<2>());
     let (Some([a, b]), Some([c, d])) = (ends_of(edge), ends_of(other)) else { return true };
-    let folds = |before: FixedPoint, corner: FixedPoint, after: FixedPoint| {
-        let [x0, y0] = [before.x - corner.x, before.y - corner.y].map(i64::from);
-        let [x1, y1] = [after.x - corner.x, after.y - corner.y].map(i64::from);
-        x0 * y1 == y0 * x1 && x0 * x1 + y0 * y1 > 0
-    };
-    if other == edge + 1 && edge != ends.1 {
-        return folds(*a, *b, *d);
-    }
-    if (edge, other) == ends {
-        return folds(*c, *a, *b);
-    }
     let one_side = |a, b, c, d| {
         let (c, d) = (cross(a, b, c), cross(a, b, d));
         c > 0 && d > 0 || c < 0 && d < 0

@@ -518,7 +518,7 @@ impl Eight {
 
 /// x and y of eight points.
 #[inline(always)]
-fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; 8]) -> (i32x8<S>, i32x8<S>) {
+pub(super) fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; 8]) -> (i32x8<S>, i32x8<S>) {
     let [low, high]: [[i32; 8]; 2] = bytemuck::cast(*points);
     i32x8::load_array(simd, low).deinterleave(i32x8::load_array(simd, high))
 }

@@ -523,6 +523,34 @@ mod tests {
     }
 
     #[test]
+    fn an_edge_that_goes_back_is_seen_wherever_it_is() {
+        // Around a circle of 21 corners.
+        let around = |size: i32| -> Outline {
+            let corner = |i: i32| {
+                let angle = f64::from(i) * std::f64::consts::TAU / 21.0;
+                let reach = |v: f64| (v * f64::from(size)) as i32;
+                (reach(libm::cos(angle)), reach(libm::sin(angle)))
+            };
+            (0..21).map(corner).collect()
+        };
+        for size in [8_000, 20_000, 4_000_000] {
+            let outline = around(size);
+            assert!(are_apart(std::slice::from_ref(&outline)), "{size}");
+            for index in 0..outline.len() {
+                // To the next corner, a part of the way back, and on.
+                let (from, to) = (outline[index], outline[(index + 1) % outline.len()]);
+                let part = |a: i32, b: i32| b + (a - b) / 3 * 2;
+                let mut spiked = outline.clone();
+                let back = (part(from.0, to.0), part(from.1, to.1));
+                // Exactly on the edge, which goes on to three times as far.
+                let on = (back.0 + (back.0 - from.0) * 2, back.1 + (back.1 - from.1) * 2);
+                spiked.splice(index + 1..index + 1, [on, back]);
+                assert!(!are_apart(&[spiked]), "{size}: {index}");
+            }
+        }
+    }
+
+    #[test]
     fn random_outlines_are_told_apart() {
         let mut seed = 7_u32;
         let mut random = |limit: i32| {
