@@ -7,6 +7,7 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 
 use super::Verb;
+use super::shapes::QUARTER;
 use crate::geom::{Point, Rect};
 
 /// How far, in pixels, a point may lie from where it belongs.
@@ -18,9 +19,6 @@ const QUARTERS: [[f32; 8]; 2] = {
     const REST: f32 = 1.0 - QUARTER;
     [[-1.0, 0.0, -REST, 0.0, 0.0, REST, 0.0, 1.0], [0.0, -1.0, 0.0, -REST, REST, 0.0, 1.0, 0.0]]
 };
-
-/// The handle of a quarter circle of radius 1: 4/3 · tan(90° / 4).
-const QUARTER: f32 = 0.552_284_75;
 
 /// Whether an outline has as many segments of the kinds that [`round_rect`] looks for.
 #[inline(always)]
@@ -97,7 +95,9 @@ pub(crate) fn round_rect<S: Simd>(simd: S, verbs: &[Verb], points: &[Point], bou
         }
     }
     let [end] = rest else { return None };
-    (count == 4 && (is_at(*end, start) || on_one_side(*end, start))).then_some(radii)
+    // Quarters that overlap have a line back between them.
+    let fit = 2.0 * radii.x <= bounds.width() + TOLERANCE && 2.0 * radii.y <= bounds.height() + TOLERANCE;
+    (count == 4 && fit && (is_at(*end, start) || on_one_side(*end, start))).then_some(radii)
 }
 
 /// A point's x and y, four times.
@@ -194,6 +194,19 @@ mod tests {
             path.close();
             path
         };
+        // Quarters wider than half of the box, with lines back along its sides.
+        let mut lens = Path::new();
+        lens.move_to((6.0, 0.0));
+        for (from, tip, to) in [
+            ((4.0, 0.0), (10.0, 0.0), (10.0, 6.0)),
+            ((10.0, 4.0), (10.0, 10.0), (4.0, 10.0)),
+            ((6.0, 10.0), (0.0, 10.0), (0.0, 4.0)),
+            ((0.0, 6.0), (0.0, 0.0), (6.0, 0.0)),
+        ] {
+            let [from, tip, to] = [from, tip, to].map(Point::from);
+            lens.line_to(from).cubic_to(from.lerp(tip, k), to.lerp(tip, k), to);
+        }
+        assert_eq!(recognized(lens.close()), None);
         let around = [[10.0, 0.0], [10.0, 10.0], [0.0, 10.0], [0.0, 0.0]];
         assert!(recognized(&arcs(around, false)).is_some());
         assert_eq!(recognized(&arcs(around, true)), None);

@@ -73,7 +73,7 @@ impl Radii {
 }
 
 /// The handle of a quarter circle of radius 1: 4/3 · tan(90° / 4).
-const QUARTER: f32 = 0.552_284_75;
+pub(super) const QUARTER: f32 = 0.552_284_75;
 
 impl Path {
     /// Adds a closed rectangle, clockwise from its top left. One with a non-finite edge adds nothing.

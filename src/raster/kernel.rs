@@ -426,7 +426,7 @@ impl<S: Simd> RowParts<S> {
 
     /// How far below a strip's top its rows start.
     #[inline(always)]
-    fn tops(simd: S) -> i32x8<S> {
+    pub(super) fn tops(simd: S) -> i32x8<S> {
         i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792])
     }
 
@@ -465,7 +465,7 @@ impl<S: Simd> RowParts<S> {
 }
 
 #[inline(always)]
-fn add_to<S: Simd>(simd: S, column: &mut Column, value: i32x8<S>) {
+pub(super) fn add_to<S: Simd>(simd: S, column: &mut Column, value: i32x8<S>) {
     (i32x8::load_array_ref(simd, &column.0) + value).store_array(&mut column.0);
 }
 
@@ -701,6 +701,42 @@ mod tests {
                 for row in 0..8 {
                     let got = f64::from(got[row]) / f64::from(FULL);
                     assert!((got - want[row]).abs() < 0.004, "{edge:?}: pixel ({column}, {row}) {got} {}", want[row]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_edge_adds_the_same_whichever_strips_it_lies_in() {
+        let mut seed = 5_u32;
+        let mut random = |n: i32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as i32 % n
+        };
+        for _ in 0..400 {
+            // Within a strip of eight rows; then so many rows further down, up to all of it in the next one.
+            let [y0, y1] = [random(2049), random(2049)];
+            let edge = Edge { x0: random(40 * 256), y0, x1: random(40 * 256), y1 };
+            // Very flat ones are walked from where they enter a strip.
+            if y0 == y1 || is_flat(0, (edge.x0 >> 8).abs_diff(edge.x1 >> 8) as usize, (y1 - y0).abs()) {
+                continue;
+            }
+            let expected = accumulate(SimdLevel::Scalar, &[edge], 40);
+            for level in SimdLevel::available() {
+                for rows in 1..8 {
+                    let down = rows * 256;
+                    let moved = Edge { y0: y0 + down, y1: y1 + down, ..edge };
+                    let mut cells = Accumulator::default();
+                    cells.resize(40, 2);
+                    dispatch!(level, simd => add_edge(simd, &mut cells, moved, 0, 2, &[]));
+                    let mut sums = [0; 16];
+                    for (column, expected) in expected.iter().enumerate() {
+                        for (row, sum) in sums.iter_mut().enumerate() {
+                            *sum += cells.strip(row / 8).unwrap().columns[column].0[row % 8];
+                        }
+                        let found = &sums[rows as usize..rows as usize + 8];
+                        assert_eq!(found, expected, "{moved:?}: column {column} at {level:?}");
+                    }
                 }
             }
         }

@@ -11,7 +11,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
 use super::cell::{Accumulator, Column, FULL, Strip};
-use super::kernel::{Reach, STRIP_SHIFT};
+use super::kernel::{Reach, RowParts, STRIP_SHIFT, add_to};
 use crate::geom::{FixedRect, IntRect, Point, Rect};
 use crate::num::fixed;
 use crate::num::lanes::{RAISED, greater_f32, lesser_f32, max_i32, min_i32, round_raised_f32};
@@ -175,7 +175,7 @@ impl StripPart<'_> {
         let FixedRect { left, right, .. } = self.shape.rect;
         let arc = Arc::new(self.shape.radius_x, self.shape.radius_y);
         let (least, greatest) = (i32x8::splat(simd, from), i32x8::splat(simd, to));
-        let rows = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) + self.strip_top;
+        let rows = RowParts::tops(simd) + self.strip_top;
         let upper = min_i32(max_i32(rows, least), greatest);
         let lower = min_i32(max_i32(rows + fixed::ONE, least), greatest);
         let start = self.insets(simd, arc, upper);
@@ -314,8 +314,8 @@ fn eight_columns<S: Simd>(
     const STEP: i32 = fixed::ONE / SAMPLES;
     let zero = f32x8::splat(simd, 0.0);
     let radius = f32x8::splat(simd, arc.along);
-    let columns = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]);
-    let mut from_left = (columns + ((column << fixed::SHIFT) + STEP / 2 - left)).to_float::<f32x8<S>>();
+    // Columns are as wide as rows are high.
+    let mut from_left = (RowParts::tops(simd) + ((column << fixed::SHIFT) + STEP / 2 - left)).to_float::<f32x8<S>>();
     let width = f32x8::splat(simd, (right - left) as f32);
     let [(_, a), (_, b)] = rows;
     let [c, d] = heights;
@@ -365,11 +365,6 @@ impl<S: Simd> Side<S> {
         let within = greater_f32(lesser_f32(x, self.right) - self.left, zero);
         self.steep * within * within + self.beyond * greater_f32(x - self.right, zero)
     }
-}
-
-#[inline(always)]
-fn add_to<S: Simd>(simd: S, column: &mut Column, value: i32x8<S>) {
-    (i32x8::load_array_ref(simd, &column.0) + value).store_array(&mut column.0);
 }
 
 /// The least of eight lanes.
