@@ -4,13 +4,12 @@ use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 
 use super::cut::Cutter;
-use super::edge::{Edge, FixedPoint};
-use super::exact::Resolver;
+use super::edge::{Edge, FixedPoint, append_closed};
+use super::exact::{MOST_CORNERS, Resolver};
 use super::round_rect::RoundRect;
-use super::simple::{MOST_CORNERS, Simplicity};
 use crate::geom::{FixedRect, IntRect, Point};
 use crate::num::fixed;
-use crate::num::lanes::{max_f32, min_f32, truncate_f32};
+use crate::num::lanes::{max_f32, min_f32};
 use crate::path::polygons::Polygons;
 use crate::style::FillRule;
 
@@ -71,10 +70,6 @@ pub(crate) struct EdgeBins {
     bands: Vec<BandList>,
     /// log2 of a band's height in 1/256 pixel.
     band_shift: u32,
-    /// The corners of a shape that may cross itself, and where its outlines end.
-    outline: Vec<FixedPoint>,
-    ends: Vec<usize>,
-    simplicity: Simplicity,
     resolver: Resolver,
 }
 
@@ -224,8 +219,8 @@ impl EdgeBins {
     }
 
     /// Lists the edges of `polygons` within `clip` (device pixels) as those of a command, for the bands that they touch.
-    /// `open_right` says that no pixel right of `clip` can be drawn. By `crossings`, edges that cross are replaced by what
-    /// bounds the inside.
+    /// `open_right` says that no pixel right of `clip` can be drawn. If `crossings` are to be resolved, edges that cross are replaced
+    /// by what bounds the inside by that rule.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &mut self,
@@ -234,18 +229,16 @@ impl EdgeBins {
         polygons: &Polygons,
         clip: IntRect,
         open_right: bool,
-        crossings: Option<Crossings>,
+        crossings: Option<FillRule>,
     ) {
         let extent = extent(simd, polygons.points());
         // Before they are cut, so that it does not depend on where.
-        if let Some(crossings) = crossings
-            && extent.is_some_and(|extent| extent.iter().all(|v| v.abs() < FARTHEST))
-            && polygons.points().len() <= MOST_CORNERS
-            && self.resolve(simd, polygons, crossings)
-        {
-            self.add_cut((command, role), Outlines::Resolved, clip, open_right);
-            return;
-        }
+        let are_resolved = crossings.is_some_and(|rule| {
+            extent.is_some_and(|extent| extent.iter().all(|v| v.abs() < FARTHEST))
+                && polygons.points().len() <= MOST_CORNERS
+                && self.resolver.resolve(simd, polygons, rule)
+        });
+        let outlines = if are_resolved { Outlines::Resolved } else { Outlines::Polygons(polygons) };
         match extent {
             Some([left, top, right, bottom])
                 if left >= clip.left as f32
@@ -253,57 +246,57 @@ impl EdgeBins {
                     && right <= clip.right as f32
                     && bottom <= clip.bottom as f32 =>
             {
-                self.add_inside(simd, (command, role), polygons, fixed::from_f32(top), fixed::from_f32(bottom));
+                self.add_inside(simd, (command, role), outlines, fixed::from_f32(top), fixed::from_f32(bottom));
             }
-            _ => self.add_cut((command, role), Outlines::Polygons(polygons), clip, open_right),
+            _ => self.add_cut((command, role), outlines, clip, open_right),
         }
     }
 
-    /// Whether polygons cross themselves or each other, and what bounds their inside was found.
-    #[inline(always)]
-    fn resolve<S: Simd>(&mut self, simd: S, polygons: &Polygons, crossings: Crossings) -> bool {
-        let Self { outline, ends, simplicity, resolver, .. } = self;
-        outline.clear();
-        ends.clear();
-        for polygon in polygons.iter() {
-            append_closed(simd, polygon, outline);
-            ends.push(outline.len());
-        }
-        let may_cross = if crossings.likely {
-            simplicity.list_outlines(outline, ends)
-        } else {
-            simplicity.wind_once(simd, outline, ends) == Some(false)
-        };
-        may_cross && resolver.resolve(simd, outline, simplicity.sides(), crossings.rule)
-    }
-
-    /// Lists polygons that lie between `top` and `bottom` (fixed point) and need no clipping.
+    /// Lists outlines that lie between `top` and `bottom` (fixed point) and need no clipping.
     #[inline(always)]
     fn add_inside<S: Simd>(
         &mut self,
         simd: S,
         (command, role): (u32, Role),
-        polygons: &Polygons,
+        outlines: Outlines<'_>,
         top: i32,
         bottom: i32,
     ) {
-        if top == bottom || u32::try_from(self.points.len() + 2 * polygons.points().len()).is_err() {
+        let Self { points, bands, band_shift, resolver, .. } = self;
+        let count = match outlines {
+            Outlines::Polygons(polygons) => 2 * polygons.points().len(),
+            Outlines::Resolved => resolver.len(),
+        };
+        if top == bottom || u32::try_from(points.len() + count).is_err() {
             return;
         }
-        let first = self.points.len();
-        let (first_band, last_band) = (top >> self.band_shift, (bottom - 1) >> self.band_shift);
-        let Some(bands) = self.bands.get_mut(first_band as usize..=last_band as usize) else { return };
+        let first = points.len();
+        let (first_band, last_band) = (top >> *band_shift, (bottom - 1) >> *band_shift);
+        let Some(bands) = bands.get_mut(first_band as usize..=last_band as usize) else { return };
         for band in bands.iter_mut() {
             band.items.push(BandItem::open(command, role, band.edges.len()));
         }
-        for polygon in polygons.iter() {
-            let start = self.points.len();
-            append_closed(simd, polygon, &mut self.points);
-            let end = self.points.len() as u32;
-            if let [band] = bands {
-                band.edges.extend(start as u32..end.saturating_sub(1));
+        let mut list = |points: &[FixedPoint], start: usize| {
+            if let [band] = &mut *bands {
+                band.edges.extend(start as u32..(points.len() as u32).saturating_sub(1));
             } else {
-                list_by_band(bands, &self.points, start, first_band << self.band_shift, self.band_shift);
+                list_by_band(bands, points, start, first_band << *band_shift, *band_shift);
+            }
+        };
+        match outlines {
+            Outlines::Polygons(polygons) => {
+                for polygon in polygons.iter() {
+                    let start = points.len();
+                    append_closed(simd, polygon, points);
+                    list(points, start);
+                }
+            }
+            Outlines::Resolved => {
+                for piece in resolver.pieces() {
+                    let start = points.len();
+                    points.extend_from_slice(piece);
+                    list(points, start);
+                }
             }
         }
         let mut empty = true;
@@ -311,7 +304,7 @@ impl EdgeBins {
             empty &= close_item(band);
         }
         if empty {
-            self.points.truncate(first);
+            points.truncate(first);
         }
     }
 
@@ -350,7 +343,11 @@ impl EdgeBins {
         match outlines {
             Outlines::Polygons(polygons) => polygons.iter().for_each(|polygon| cutter.polygon(polygon)),
             Outlines::Resolved => {
-                resolver.pieces().iter().for_each(|[from, to]| cutter.edge((from.x, from.y), (to.x, to.y)));
+                for pair in resolver.pieces().flat_map(|piece| piece.windows(2)) {
+                    if let [from, to] = pair {
+                        cutter.edge((from.x, from.y), (to.x, to.y));
+                    }
+                }
             }
         }
         for band in bands {
@@ -363,15 +360,7 @@ impl EdgeBins {
     }
 }
 
-/// What exact coverage asks of a shape.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Crossings {
-    pub(crate) rule: FillRule,
-    /// Whether its outlines hardly ever stay apart, so that a proof of it is not worth trying: those of strokes.
-    pub(crate) likely: bool,
-}
-
-/// What is to be cut.
+/// What bounds a shape.
 #[derive(Clone, Copy)]
 enum Outlines<'a> {
     Polygons(&'a Polygons),
@@ -467,47 +456,12 @@ pub(crate) fn extent<S: Simd>(simd: S, points: &[Point]) -> Option<[f32; 4]> {
     Some([left, top, right, bottom])
 }
 
-/// Four points in fixed point. Not a closure: those are not always inlined, and lose the SIMD level then.
-#[inline(always)]
-fn rounded<S: Simd>(simd: S, block: [Point; 4]) -> [FixedPoint; 4] {
-    // A float times a power of two is exact, so that it is rounded once.
-    let v = f32x8::load_array(simd, bytemuck::cast(block)) * fixed::ONE as f32;
-    bytemuck::cast(truncate_f32(v.round_ties_even()).to_array())
-}
-
-/// A closed polygon's corners in fixed point, the first one once more at the end.
-#[inline(always)]
-fn append_closed<S: Simd>(simd: S, polygon: &[Point], out: &mut Vec<FixedPoint>) {
-    let start = out.len();
-    append_fixed(simd, polygon, out);
-    if let Some(first) = out.get(start) {
-        out.push(*first);
-    }
-}
-
-/// Appends device points within ±2^22 as fixed point, rounded to nearest, ties to even.
-#[inline(always)]
-fn append_fixed<S: Simd>(simd: S, points: &[Point], out: &mut Vec<FixedPoint>) {
-    let (blocks, rest) = points.as_chunks::<4>();
-    for block in blocks {
-        out.extend_from_slice(&rounded(simd, *block));
-    }
-    if !rest.is_empty() {
-        let mut last = [Point::ZERO; 4];
-        for (last, p) in last.iter_mut().zip(rest) {
-            *last = *p;
-        }
-        let end = out.len() + rest.len();
-        out.extend_from_slice(&rounded(simd, last));
-        out.truncate(end);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::num::level::{SimdLevel, dispatch};
     use crate::path::flatten::PolygonSink;
+    use crate::raster::edge::append_fixed;
 
     fn bins_of(points: &[(f32, f32)], clip: IntRect, open_right: bool, bands: usize, height_shift: u32) -> EdgeBins {
         let mut polygons = Polygons::default();

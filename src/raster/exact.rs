@@ -4,473 +4,464 @@
 //! other, and of the pieces those are kept that have the inside on one side and the outside on the other, each going the
 //! way that winds around the inside once. What is then drawn are edges as any others.
 //!
-//! Outlines are swept from top to bottom, from one height at which an edge starts, ends or crosses another to the next. Between
-//! two of them (a *scanbeam*, after Vatti, *A generic solution to polygon clipping*, 1992) edges have an order from left to right;
-//! by the windings between them the fill rule says of each whether it bounds the inside. At a height only those
-//! are looked at that something happens to, and their neighbours.
+//! Edges that may meet are found by their boxes ([`boxes`](super::boxes)); which of them cross, by the sides on which corners lie
+//! ([`orientation`](super::orientation), where ties are broken). How often outlines wind left of an edge is counted once for each
+//! outline, at its leftmost corner; along the outline it changes by one at each crossing. What is kept are parts of outlines, in their order.
 //!
-//! Crossings are rounded to 1/256 pixel, as corners are. The order is that in the middle between two such heights, and windings
-//! are counted along it, so that they always add up: what rounding may change is some 2^-17 of a pixel, never a row.
+//! Crossings are rounded to 1/256 pixel, as corners are; exactly, so that where three edges cross in one point all agree on it. Along an edge
+//! they are put in order exactly as well. Kept pieces thus always close: what rounding may change is some 2^-17 of a pixel, never a row.
 
-use fearless_simd::i32x8;
-use fearless_simd::prelude::*;
+use core::cmp::Ordering;
 
-use super::edge::FixedPoint;
-use super::simple::Side;
+use fearless_simd::Simd;
+
+use super::boxes::{Boxes, Numbers};
+use super::edge::{FixedPoint, append_closed};
+use super::orientation::{Corner, Ends, area, is_right_of};
 use crate::num::lanes::round_f64;
+use crate::path::polygons::Polygons;
 use crate::style::FillRule;
 
 /// After so many looks at edges in all, and so many for each corner, outlines stay as they are: at such density, what
 /// is inside of them no longer shows.
-const LOOKS: usize = 1 << 21;
-const LOOKS_PER_CORNER: usize = 128;
+const LOOKS: usize = 1 << 20;
+const LOOKS_PER_CORNER: usize = 64;
+/// More crossings than that are not kept.
+const MOST_CROSSINGS: usize = 1 << 20;
 
-/// Where nothing happens.
-const NEVER: i32 = i32::MAX;
+/// Outlines of more corners are not looked at: what crosses itself so often does so everywhere, and memory matters.
+pub(super) const MOST_CORNERS: usize = 1 << 20;
+
+/// No crossing.
+const NONE: u32 = u32::MAX;
+
+/// A closed outline: the numbers of its first corner and of the last one, which is the first once more.
+#[derive(Clone, Copy, Debug)]
+struct Outline {
+    first: u32,
+    last: u32,
+    /// Whether an edge crosses another.
+    crosses: bool,
+    /// How often outlines wind left of where it starts, which is its leftmost corner.
+    start: u32,
+    left: i32,
+}
+
+/// Where an edge crosses another.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    /// The part of the edge that lies before it, as a fraction.
+    numerator: i64,
+    denominator: i64,
+    place: FixedPoint,
+    /// By how much the windings beside the edge change.
+    change: i32,
+    /// The edge's next crossing, in no order.
+    next: u32,
+}
 
 /// Working memory, and the pieces of the shape in work.
 #[derive(Debug, Default)]
 pub(super) struct Resolver {
-    active: Row,
-    /// The height at which each of them ends or crosses the next one.
-    next: Vec<i32>,
-    touched: Touched,
-    /// How many looks are left.
-    looks: usize,
-    /// Where each piece starts and ends.
-    pieces: Vec<[FixedPoint; 2]>,
+    corners: Vec<FixedPoint>,
+    outlines: Vec<Outline>,
+    boxes: Boxes,
+    crossings: Vec<Crossing>,
+    /// For each edge, by the number of its first corner, one of its crossings.
+    first: Vec<u32>,
+    /// Those of the edge in work.
+    along: Vec<Crossing>,
+    pieces: Pieces,
 }
 
-/// An edge that the scanbeam in work crosses. Heights and x in 1/256 pixel.
-#[derive(Clone, Copy, Debug)]
-struct Active {
-    /// The edge, and how to go on from it.
-    side: Side,
-    /// The change of x per unit of y.
-    slope: f64,
-    winding: i32,
-    /// The winding left of it.
-    left: i32,
-    /// How it winds around the inside from the height `since` on: 1 or -1, or 0 where it does not bound it.
-    bounds: i32,
-    since: i32,
-}
-
-/// How many heights come before the first that is `y`.
-#[inline(always)]
-fn first_at<S: Simd>(simd: S, heights: &[i32], y: i32) -> usize {
-    let (eights, rest) = heights.as_chunks::<8>();
-    for (index, eight) in eights.iter().enumerate() {
-        let here = i32x8::load_array_ref(simd, eight).simd_eq(y).to_bitmask() as u32;
-        if here != 0 {
-            return 8 * index + here.trailing_zeros() as usize;
-        }
-    }
-    8 * eights.len() + rest.iter().position(|height| *height == y).unwrap_or(rest.len())
-}
-
-/// The active edges from left to right, and where each of them is kept: order changes all the time, and moves numbers alone.
+/// Polylines that bound the inside.
 #[derive(Debug, Default)]
-struct Row {
-    order: Vec<u32>,
-    edges: Vec<Active>,
-    /// Places in `edges` of such as have left.
-    free: Vec<u32>,
-}
-
-impl Row {
-    fn clear(&mut self) {
-        self.order.clear();
-        self.edges.clear();
-        self.free.clear();
-    }
-
-    #[inline(always)]
-    fn len(&self) -> usize {
-        self.order.len()
-    }
-
-    #[inline(always)]
-    fn get(&self, index: usize) -> Option<&Active> {
-        self.edges.get(*self.order.get(index)? as usize)
-    }
-
-    #[inline(always)]
-    fn get_mut(&mut self, index: usize) -> Option<&mut Active> {
-        self.edges.get_mut(*self.order.get(index)? as usize)
-    }
-
-    #[inline(always)]
-    fn insert(&mut self, index: usize, edge: Active) {
-        let place = match self.free.pop() {
-            Some(place) => {
-                if let Some(old) = self.edges.get_mut(place as usize) {
-                    *old = edge;
-                }
-                place
-            }
-            None => {
-                self.edges.push(edge);
-                self.edges.len() as u32 - 1
-            }
-        };
-        self.order.insert(index, place);
-    }
-
-    /// The first edge of which `is_left` does not hold, which holds of all before it.
-    #[inline(always)]
-    fn partition_point(&self, is_left: impl Fn(&Active) -> bool) -> usize {
-        self.order.partition_point(|place| self.edges.get(*place as usize).is_some_and(&is_left))
-    }
-}
-
-/// Active edges side by side to which something happens: from the first to the last.
-#[derive(Clone, Copy, Debug)]
-struct Range {
-    first: usize,
-    last: usize,
-}
-
-/// All of those at one height. Many things happen at once, but far from each other.
-#[derive(Debug, Default)]
-struct Touched {
-    ranges: Vec<Range>,
-}
-
-impl Touched {
-    /// Adds an edge that lies right of those added before, or is next to them.
-    #[inline(always)]
-    fn add(&mut self, index: usize) {
-        match self.ranges.last_mut() {
-            Some(range) if index <= range.last + 1 => {
-                range.first = range.first.min(index);
-                range.last = range.last.max(index);
-            }
-            _ => self.ranges.push(Range { first: index, last: index }),
-        }
-    }
-
-    /// Adds an edge that was put in before the edge that was number `index`.
-    #[inline(always)]
-    fn add_new(&mut self, index: usize) {
-        for range in &mut self.ranges {
-            range.first += usize::from(range.first >= index);
-            range.last += usize::from(range.last >= index);
-        }
-        self.ranges.push(Range { first: index, last: index });
-    }
-
-    /// Puts ranges in order, and those together that meet.
-    #[inline(always)]
-    fn merge(&mut self) {
-        if !self.ranges.is_sorted_by(|a, b| a.last + 1 < b.first) {
-            self.ranges.sort_unstable_by_key(|range| range.first);
-            self.ranges.dedup_by(|next, range| {
-                let meets = next.first <= range.last + 1;
-                if meets {
-                    range.last = range.last.max(next.last);
-                }
-                meets
-            });
-        }
-    }
-}
-
-impl Active {
-    #[inline(always)]
-    fn new(side: Side) -> Self {
-        let winding = if side.forwards { 1 } else { -1 };
-        Self { side, slope: slope(side), winding, left: 0, bounds: 0, since: side.from.y }
-    }
-
-    /// x at half of a height.
-    #[inline(always)]
-    fn x_at(&self, half: i32) -> f64 {
-        f64::from(self.side.from.x) + self.slope * (0.5 * f64::from(half - 2 * self.side.from.y))
-    }
-
-    /// The point at a height.
-    #[inline(always)]
-    fn point(&self, y: i32) -> FixedPoint {
-        if y == self.side.to.y { self.side.to } else { FixedPoint { x: round_f64(self.x_at(2 * y)), y } }
-    }
-
-    #[inline(always)]
-    fn leftmost(&self) -> i32 {
-        self.side.from.x.min(self.side.to.x)
-    }
-
-    #[inline(always)]
-    fn rightmost(&self) -> i32 {
-        self.side.from.x.max(self.side.to.x)
-    }
-
-    /// Whether it shares no column with those beside it: it then stays where it is.
-    #[inline(always)]
-    fn is_alone(&self, before: Option<&Self>, after: Option<&Self>) -> bool {
-        before.is_none_or(|before| before.rightmost() < self.leftmost())
-            && after.is_none_or(|after| self.rightmost() < after.leftmost())
-    }
-
-    /// Ends the piece in work at `y`.
-    #[inline(always)]
-    fn finish(&mut self, y: i32, pieces: &mut Vec<[FixedPoint; 2]>) {
-        if self.bounds != 0 && self.since < y {
-            let (start, end) = (self.point(self.since), self.point(y));
-            pieces.push(if self.bounds > 0 { [start, end] } else { [end, start] });
-        }
-        self.since = y;
-    }
-
-    /// Goes on to the edge below; false where there is none.
-    #[inline(always)]
-    fn advance(&mut self, points: &[FixedPoint]) -> bool {
-        let more = self.side.advance(points);
-        if more {
-            self.slope = slope(self.side);
-        }
-        more
-    }
-
-    /// Where this edge crosses one that is right of it just below `y`; at least 1/256 pixel further down.
-    #[inline(always)]
-    fn crossing(&self, other: &Self, y: i32) -> i32 {
-        let bottom = self.side.to.y.min(other.side.to.y);
-        if self.rightmost() <= other.leftmost() || bottom - y < 2 {
-            return NEVER;
-        }
-        let overlap = self.x_at(2 * bottom - 1) - other.x_at(2 * bottom - 1);
-        if overlap <= 0.0 {
-            return NEVER;
-        }
-        let gap = other.x_at(2 * y + 1) - self.x_at(2 * y + 1);
-        y + 1 + (f64::from(bottom - y - 1) * (gap / (gap + overlap))) as i32
-    }
-}
-
-#[inline(always)]
-fn slope(side: Side) -> f64 {
-    f64::from(side.to.x - side.from.x) / f64::from(side.to.y - side.from.y)
+struct Pieces {
+    points: Vec<FixedPoint>,
+    /// Where each of them ends.
+    ends: Vec<u32>,
+    /// Where the one in work starts, and how it bounds the inside; 0 where there is none.
+    start: usize,
+    way: i32,
 }
 
 impl Resolver {
-    /// Finds the pieces that bound the inside of a shape. `sides` are those of its outlines, whose corners are `points`, in the
-    /// order of their tops. False where sums of areas are coverage, or where it takes too long to find out.
+    /// Finds the pieces that bound the inside of polygons, whose corners lie within a million pixels. False where sums of areas are coverage, or where
+    /// it takes too long to find out.
     #[inline(never)]
-    pub(super) fn resolve<S: Simd>(&mut self, simd: S, points: &[FixedPoint], sides: &[Side], rule: FillRule) -> bool {
-        let found = simd.vectorize(
+    pub(super) fn resolve<S: Simd>(&mut self, simd: S, polygons: &Polygons, rule: FillRule) -> bool {
+        simd.vectorize(
             #[inline(always)]
-            || match rule {
-                FillRule::NonZero => self.sweep::<S, false>(simd, points, sides),
-                FillRule::EvenOdd => self.sweep::<S, true>(simd, points, sides),
+            || {
+                self.list(simd, polygons);
+                self.find_crossings(simd).is_some()
+                    && self.find_windings(simd).is_some()
+                    && match rule {
+                        FillRule::NonZero => self.keep::<false>(),
+                        FillRule::EvenOdd => self.keep::<true>(),
+                    }
+            },
+        )
+    }
+
+    /// The pieces: polylines, each from its first to its last point.
+    pub(super) fn pieces(&self) -> impl Iterator<Item = &[FixedPoint]> {
+        let mut start = 0;
+        self.pieces.ends.iter().map(move |end| {
+            let end = *end as usize;
+            let piece = self.pieces.points.get(start..end).unwrap_or(&[]);
+            start = end;
+            piece
+        })
+    }
+
+    /// The number of points of all pieces.
+    pub(super) fn len(&self) -> usize {
+        self.pieces.points.len()
+    }
+
+    /// Lists corners, and boxes around edges. Corners that follow themselves are left out, as are outlines of fewer than three, whose area is 0.
+    #[inline(always)]
+    fn list<S: Simd>(&mut self, simd: S, polygons: &Polygons) {
+        let Self { corners, outlines, boxes, .. } = self;
+        corners.clear();
+        outlines.clear();
+        boxes.clear();
+        for polygon in polygons.iter() {
+            let first = corners.len();
+            append_closed(simd, polygon, corners);
+            leave_out_repeated(corners, first);
+            let Some(closed) = corners.get(first..).filter(|closed| closed.len() > 3) else {
+                corners.truncate(first);
+                continue;
+            };
+            boxes.add(simd, closed, first as u32);
+            let (first, last) = (first as u32, corners.len() as u32 - 1);
+            outlines.push(Outline { first, last, crosses: false, start: first, left: 0 });
+        }
+        boxes.build();
+    }
+
+    /// Finds where edges cross; `None` where that takes too long.
+    #[inline(always)]
+    fn find_crossings<S: Simd>(&mut self, simd: S) -> Option<()> {
+        let Self { corners, boxes, crossings, first, .. } = self;
+        crossings.clear();
+        first.clear();
+        let mut looks = LOOKS + LOOKS_PER_CORNER * corners.len();
+        let all = boxes.for_pairs(
+            simd,
+            &mut looks,
+            #[inline(always)]
+            |edge, other| {
+                let ends = [ends_of(corners, edge), ends_of(corners, other)];
+                if let [Some(ends), Some(others)] = ends
+                    && crossings.len() < MOST_CROSSINGS
+                    && let Some(crossing) = cross(ends, others)
+                {
+                    if first.is_empty() {
+                        first.resize(corners.len(), NONE);
+                    }
+                    for ([edge, _], crossing) in [edge, other].into_iter().zip(crossing) {
+                        if let Some(head) = first.get_mut(edge as usize) {
+                            let number = crossings.len() as u32;
+                            crossings.push(Crossing { next: *head, ..crossing });
+                            *head = number;
+                        }
+                    }
+                }
             },
         );
-        found.unwrap_or(false)
+        (all && crossings.len() < MOST_CROSSINGS).then_some(())
     }
 
-    /// The pieces: from where to where each goes.
-    pub(super) fn pieces(&self) -> &[[FixedPoint; 2]] {
-        &self.pieces
-    }
-
-    /// Whether edges had to be cut, left out or turned round; `None` where that takes too long.
+    /// Counts how often outlines wind beside the leftmost corner of each; `None` where that takes too long.
     #[inline(always)]
-    fn sweep<S: Simd, const EVEN_ODD: bool>(&mut self, simd: S, points: &[FixedPoint], sides: &[Side]) -> Option<bool> {
-        self.active.clear();
-        self.next.clear();
-        self.pieces.clear();
-        let mut coming = sides;
-        self.looks = LOOKS + LOOKS_PER_CORNER * points.len();
-        // Whether all edges bound the inside as they are, or all the other way round.
-        let (mut same, mut reversed) = (true, true);
-        loop {
-            let start = coming.first().map_or(NEVER, |side| side.from.y);
-            let event = self.next.iter().fold(NEVER, |first, next| first.min(*next));
-            let y = start.min(event);
-            if y == NEVER {
-                break;
-            }
-            self.touched.ranges.clear();
-            if event == y {
-                self.go_on(simd, points, y);
-                self.arrange(y);
-            }
-            while let [side, rest @ ..] = coming
-                && side.from.y == y
-            {
-                self.insert(*side);
-                coming = rest;
-            }
-            self.spend(1 + self.active.len() / 8);
-            self.touched.merge();
-            for index in 0..self.touched.ranges.len() {
-                let Some(range) = self.touched.ranges.get(index).copied() else { break };
-                self.spend(3 + range.last - range.first);
-                self.look_ahead(y, range);
-                self.apply::<EVEN_ODD>(y, range, &mut same, &mut reversed);
-            }
-            if self.looks == 0 {
-                return None;
-            }
-        }
-        Some(!same && !reversed)
-    }
-
-    /// Counts looks.
-    #[inline(always)]
-    fn spend(&mut self, looks: usize) {
-        self.looks = self.looks.saturating_sub(looks);
-    }
-
-    /// Goes on from edges that end at `y`.
-    #[inline(always)]
-    fn go_on<S: Simd>(&mut self, simd: S, points: &[FixedPoint], y: i32) {
-        let Self { active, next, pieces, touched, .. } = self;
-        let (mut index, mut kept) = (0_usize, 0_usize);
-        while index < active.len() {
-            // Mostly nothing happens to many side by side.
-            let run = first_at(simd, next.get(index..).unwrap_or(&[]), y);
-            if run > 0 {
-                if kept < index {
-                    active.order.copy_within(index..index + run, kept);
-                    next.copy_within(index..index + run, kept);
+    fn find_windings<S: Simd>(&mut self, simd: S) -> Option<()> {
+        let Self { corners, outlines, boxes, first, .. } = self;
+        let mut looks = LOOKS + LOOKS_PER_CORNER * corners.len();
+        let is_alone = outlines.len() == 1;
+        for outline in outlines {
+            let edges = outline.first as usize..outline.last as usize;
+            outline.crosses = first.get(edges.clone()).is_some_and(|first| first.iter().any(|first| *first != NONE));
+            let own = corners.get(edges)?;
+            let mut leftmost = Corner { point: *own.first()?, number: outline.first };
+            for (point, number) in own.iter().zip(outline.first..) {
+                let corner = Corner { point: *point, number };
+                if corner.is_left_of(leftmost) {
+                    leftmost = corner;
                 }
-                (index, kept) = (index + run, kept + run);
-                continue;
             }
-            if let Some(edge) = active.get_mut(index) {
-                let (mut is_alone, mut last) = (false, kept + 1);
-                if edge.side.to.y == y {
-                    edge.finish(y, pieces);
-                    if !edge.advance(points) {
-                        touched.add(kept.saturating_sub(1));
-                        touched.add(kept);
-                        active.free.extend(active.order.get(index));
-                        index += 1;
+            outline.start = leftmost.number;
+            let mut outside = 0;
+            if !is_alone {
+                let own = outline.first..outline.last;
+                let all = boxes.for_left_of(
+                    simd,
+                    leftmost.point,
+                    &mut looks,
+                    #[inline(always)]
+                    |edge| {
+                        if let Some(edge) = ends_of(corners, edge)
+                            && let [from, to] = edge
+                            && !own.contains(&from.number)
+                            && from.is_above(leftmost) != to.is_above(leftmost)
+                        {
+                            let down = from.is_above(leftmost);
+                            // Right of an edge that goes down, seen along it, lies what is left of it on the canvas.
+                            if is_right_of(edge, leftmost, area(edge, leftmost)) != down {
+                                outside += if down { 1 } else { -1 };
+                            }
+                        }
+                    },
+                );
+                if !all {
+                    return None;
+                }
+            }
+            let corner = |number: u32| Some(Corner { point: *corners.get(number as usize)?, number });
+            let before = if leftmost.number == outline.first { outline.last - 1 } else { leftmost.number - 1 };
+            let after = if leftmost.number + 1 == outline.last { outline.first } else { leftmost.number + 1 };
+            let (before, after) = (corner(before)?, corner(after)?);
+            // At its leftmost corner an outline turns to where it has its inside.
+            let turns_right = is_right_of([before, leftmost], after, area([before, leftmost], after));
+            outline.left = if turns_right { outside } else { outside + 1 };
+        }
+        Some(())
+    }
+
+    /// Keeps the pieces that bound the inside; whether they are others than the edges are.
+    #[inline(always)]
+    fn keep<const EVEN_ODD: bool>(&mut self) -> bool {
+        let Self { corners, outlines, crossings, first, along, pieces, .. } = self;
+        let bounds = bounds::<EVEN_ODD>;
+        let is = |way: i32| outlines.iter().all(|outline| !outline.crosses && bounds(outline.left) == way);
+        if is(1) || is(-1) {
+            return false;
+        }
+        pieces.clear();
+        for outline in outlines {
+            let (edges, start) = (outline.first as usize..outline.last as usize, outline.start as usize);
+            let mut left = outline.left;
+            // From the leftmost corner to the end, and from the first corner on.
+            for part in [start..edges.end, edges.start..start] {
+                let mut from = part.start;
+                if !outline.crosses {
+                    pieces.follow(corners.get(from..=part.end).unwrap_or(&[]), bounds(left));
+                    continue;
+                }
+                while from < part.end {
+                    // Up to the next edge that crosses another.
+                    let heads = first.get(from..part.end).unwrap_or(&[]);
+                    let run = heads.iter().position(|first| *first != NONE).unwrap_or(heads.len());
+                    if run > 0 {
+                        pieces.follow(corners.get(from..=from + run).unwrap_or(&[]), bounds(left));
+                        from += run;
                         continue;
                     }
-                    let edge = *edge;
-                    let before = kept.checked_sub(1).and_then(|before| active.get(before));
-                    is_alone = edge.is_alone(before, active.get(index + 1));
-                    last = kept;
-                    if let Some(event) = next.get_mut(index) {
-                        *event = edge.side.to.y;
+                    list_along(crossings, heads.first().copied().unwrap_or(NONE), along);
+                    let Some([start, end]) = corners.get(from..).and_then(|corners| corners.first_chunk()) else {
+                        break;
+                    };
+                    let mut last = *start;
+                    for crossing in &*along {
+                        pieces.follow(&[last, crossing.place], bounds(left));
+                        last = crossing.place;
+                        left += crossing.change;
                     }
-                }
-                if !is_alone {
-                    touched.add(kept);
-                    touched.add(last);
+                    pieces.follow(&[last, *end], bounds(left));
+                    from += 1;
                 }
             }
-            if kept < index {
-                active.order.copy_within(index..=index, kept);
-                next.copy_within(index..=index, kept);
-            }
-            (index, kept) = (index + 1, kept + 1);
         }
-        active.order.truncate(kept);
-        next.truncate(kept);
+        pieces.finish();
+        true
     }
+}
 
-    /// Puts the touched edges in their order just below `y`.
-    #[inline(always)]
-    fn arrange(&mut self, y: i32) {
-        for number in 0..self.touched.ranges.len() {
-            let Some(mut range) = self.touched.ranges.get(number).copied() else { break };
-            self.arrange_range(y, &mut range);
-            if let Some(arranged) = self.touched.ranges.get_mut(number) {
-                *arranged = range;
-            }
-        }
-    }
+/// How an edge with such a winding left of it bounds the inside: 1 where it lies left, -1 where right, 0 where on both sides or none.
+#[inline(always)]
+fn bounds<const EVEN_ODD: bool>(left: i32) -> i32 {
+    if EVEN_ODD { if left & 1 == 0 { -1 } else { 1 } } else { (left == 1) as i32 - (left == 0) as i32 }
+}
 
-    #[inline(always)]
-    fn arrange_range(&mut self, y: i32, range: &mut Range) {
-        let half = 2 * y + 1;
-        let mut index = range.first.max(1);
-        while let (Some(before), Some(edge)) = (self.active.get(index - 1), self.active.get(index)) {
-            let x = edge.x_at(half);
-            if before.x_at(half) > x {
-                let is_left = |place: &usize| self.active.get(*place).is_none_or(|other| other.x_at(half) <= x);
-                let place = (0..index - 1).rev().find(is_left).map_or(0, |place| place + 1);
-                // Mostly two change places.
-                self.spend(index - place);
-                if self.looks == 0 {
-                    return;
-                }
-                if let Some(moved) = self.active.order.get_mut(place..=index) {
-                    moved.rotate_right(1);
-                }
-                range.first = range.first.min(place);
-                range.last = range.last.max(index);
-            } else if index > range.last {
-                break;
-            }
-            index += 1;
-        }
-    }
+/// An edge's corners.
+#[inline(always)]
+fn ends_of(corners: &[FixedPoint], [from, to]: Numbers) -> Option<Ends> {
+    let corner = |number: u32| Some(Corner { point: *corners.get(number as usize)?, number });
+    Some([corner(from)?, corner(to)?])
+}
 
-    /// Puts an edge that starts among those that are in order.
-    #[inline(always)]
-    fn insert(&mut self, side: Side) {
-        let edge = Active::new(side);
-        let half = 2 * side.from.y + 1;
-        let x = edge.x_at(half);
-        let place = self.active.partition_point(|other| other.x_at(half) <= x);
-        self.spend((self.active.len() - place) / 8);
-        self.active.insert(place, edge);
-        self.next.insert(place, NEVER);
-        self.touched.add_new(place);
-    }
-
-    /// Finds what happens next to the touched edges and the one left of them.
-    #[inline(always)]
-    fn look_ahead(&mut self, y: i32, touched: Range) {
-        let first = touched.first.saturating_sub(1);
-        let nexts = self.next.get_mut(first..).unwrap_or(&mut []);
-        for (index, next) in (first..=touched.last).zip(nexts) {
-            let Some(edge) = self.active.get(index) else { break };
-            let crossing = self.active.get(index + 1).map_or(NEVER, |other| edge.crossing(other, y));
-            *next = edge.side.to.y.min(crossing);
-        }
-    }
-
-    /// Applies the fill rule to the windings between the edges from `y` on.
-    #[inline(always)]
-    fn apply<const EVEN_ODD: bool>(&mut self, y: i32, touched: Range, same: &mut bool, reversed: &mut bool) {
-        let is_inside = |winding: i32| if EVEN_ODD { winding & 1 } else { (winding != 0) as i32 };
-        let before = touched.first.checked_sub(1).and_then(|index| self.active.get(index));
-        let mut winding = before.map_or(0, |edge| edge.left + edge.winding);
-        let mut inside = is_inside(winding);
-        let Self { active: Row { order, edges, .. }, pieces, .. } = self;
-        for (index, place) in order.iter().enumerate().skip(touched.first) {
-            let Some(edge) = edges.get_mut(*place as usize) else { break };
-            if index > touched.last && edge.left == winding {
-                break;
-            }
-            edge.left = winding;
-            winding += edge.winding;
-            let right = is_inside(winding);
-            let bounds = right - inside;
-            inside = right;
-            *same &= bounds == edge.winding;
-            *reversed &= bounds == -edge.winding;
-            if bounds != edge.bounds {
-                edge.finish(y, pieces);
-                edge.bounds = bounds;
+/// Leaves out corners from `first` on that are where the one before is.
+#[inline(always)]
+fn leave_out_repeated(corners: &mut Vec<FixedPoint>, first: usize) {
+    let Some(listed) = corners.get_mut(first..) else { return };
+    if listed.windows(2).any(|pair| matches!(pair, [a, b] if a == b)) {
+        let mut kept = 0;
+        for index in 0..listed.len() {
+            let Some(corner) = listed.get(index).copied() else { break };
+            let is_repeated = kept > 0 && listed.get(kept - 1) == Some(&corner);
+            if !is_repeated && let Some(place) = listed.get_mut(kept) {
+                *place = corner;
+                kept += 1;
             }
         }
+        corners.truncate(first + kept);
+    }
+}
+
+/// Where two edges cross, along the one and along the other.
+#[inline(always)]
+fn cross(edge: Ends, other: Ends) -> Option<[Crossing; 2]> {
+    let sides = |edge: Ends, [from, to]: Ends| {
+        let areas = [area(edge, from), area(edge, to)];
+        let [from_area, to_area] = areas;
+        (areas, [is_right_of(edge, from, from_area), is_right_of(edge, to, to_area)])
+    };
+    let (areas, [from_right, to_right]) = sides(other, edge);
+    if from_right == to_right {
+        return None;
+    }
+    let (other_areas, [other_from_right, other_to_right]) = sides(edge, other);
+    if other_from_right == other_to_right {
+        return None;
+    }
+    let part = |[before, after]: [i64; 2]| (before.abs(), before.abs() + after.abs());
+    let (numerator, denominator) = part(areas);
+    let [from, to] = edge;
+    if denominator == 0 {
+        return Some(cross_on_one_line(edge, other, to_right));
+    }
+    let place = FixedPoint {
+        x: from.point.x + rounded_part(to.point.x - from.point.x, numerator, denominator),
+        y: from.point.y + rounded_part(to.point.y - from.point.y, numerator, denominator),
+    };
+    let crossing = |(numerator, denominator), to_right| Crossing {
+        numerator,
+        denominator,
+        place,
+        change: if to_right { -1 } else { 1 },
+        next: NONE,
+    };
+    Some([crossing((numerator, denominator), to_right), crossing(part(other_areas), other_to_right)])
+}
+
+/// Where two edges on one line cross: the corner that is moved most turns its edge around the edge's other corner.
+#[cold]
+fn cross_on_one_line(edge: Ends, other: Ends, to_right: bool) -> [Crossing; 2] {
+    let ([a, b], [c, d]) = (edge, other);
+    let first = a.number.min(b.number).min(c.number.min(d.number));
+    let place = match first {
+        _ if first == a.number => b,
+        _ if first == b.number => a,
+        _ if first == c.number => d,
+        _ => c,
+    };
+    let crossing = |[from, to]: Ends, to_right: bool| {
+        let along = |v: fn(FixedPoint) -> i32| {
+            [(v(place.point) - v(from.point)).abs(), (v(to.point) - v(from.point)).abs()].map(i64::from)
+        };
+        let [across, down] = [along(|p| p.x), along(|p| p.y)];
+        let [numerator, denominator] = if across[1] > 0 { across } else { down };
+        Crossing { numerator, denominator, place: place.point, change: if to_right { -1 } else { 1 }, next: NONE }
+    };
+    [crossing(edge, to_right), crossing(other, !to_right)]
+}
+
+/// `length` times a fraction of 0 to 1, rounded to nearest, halves upwards.
+#[inline(always)]
+fn rounded_part(length: i32, numerator: i64, denominator: i64) -> i32 {
+    /// More than the error of what is reckoned below, for lengths up to 2^30.
+    const SURE: f64 = 0.5 - 1.0 / (1 << 20) as f64;
+    let part = f64::from(length) * (numerator as f64 / denominator as f64);
+    let rounded = round_f64(part);
+    if (part - f64::from(rounded)).abs() < SURE { rounded } else { rounded_exactly(length, numerator, denominator) }
+}
+
+#[cold]
+fn rounded_exactly(length: i32, numerator: i64, denominator: i64) -> i32 {
+    let (product, whole) = (i128::from(length) * i128::from(numerator), i128::from(denominator));
+    (2 * product + whole).div_euclid(2 * whole) as i32
+}
+
+/// Lists the crossings of an edge from its start to its end, from `head` on.
+#[inline(always)]
+fn list_along(crossings: &[Crossing], head: u32, along: &mut Vec<Crossing>) {
+    along.clear();
+    let mut number = head;
+    while let Some(crossing) = crossings.get(number as usize) {
+        along.push(*crossing);
+        number = crossing.next;
+    }
+    if along.len() > 1 {
+        along.sort_unstable_by(|a, b| a.compare(b));
+    }
+}
+
+impl Crossing {
+    /// Which of two crossings of an edge comes first.
+    #[inline(always)]
+    fn compare(&self, other: &Self) -> Ordering {
+        /// More than the error of two quotients up to 1.
+        const SURE: f64 = 1e-14;
+        let part = |crossing: &Self| crossing.numerator as f64 / crossing.denominator as f64;
+        let distance = part(self) - part(other);
+        if distance.abs() > SURE {
+            return if distance < 0.0 { Ordering::Less } else { Ordering::Greater };
+        }
+        let product = |a: i64, b: i64| i128::from(a) * i128::from(b);
+        product(self.numerator, other.denominator).cmp(&product(other.numerator, self.denominator))
+    }
+}
+
+impl Pieces {
+    fn clear(&mut self) {
+        self.points.clear();
+        self.ends.clear();
+        (self.start, self.way) = (0, 0);
+    }
+
+    /// Goes along `points`, which bound the inside in `way`.
+    #[inline(always)]
+    fn follow(&mut self, points: &[FixedPoint], way: i32) {
+        let Some((first, rest)) = points.split_first() else { return };
+        if way != self.way || way != 0 && self.points.last() != Some(first) {
+            self.finish();
+            self.way = way;
+            if way != 0 {
+                self.points.push(*first);
+            }
+        }
+        if way != 0 {
+            self.points.extend_from_slice(rest);
+        }
+    }
+
+    /// Ends the piece in work.
+    #[inline(always)]
+    fn finish(&mut self) {
+        if self.way < 0
+            && let Some(piece) = self.points.get_mut(self.start..)
+        {
+            piece.reverse();
+        }
+        if self.start < self.points.len() {
+            self.start = self.points.len();
+            self.ends.push(self.start as u32);
+        }
+        self.way = 0;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::Point;
     use crate::num::level::{SimdLevel, dispatch};
+    use crate::path::flatten::PolygonSink;
     use crate::raster::batch::add_edges;
     use crate::raster::bins::Edges;
     use crate::raster::cell::{Accumulator, FULL};
-    use crate::raster::simple::Simplicity;
 
     const WIDTH: usize = 64;
 
@@ -519,20 +510,26 @@ mod tests {
         covered
     }
 
+    /// Outlines whose last corners are their first.
+    fn polygons(outlines: &[Vec<FixedPoint>]) -> Polygons {
+        let mut polygons = Polygons::default();
+        for outline in outlines {
+            for (index, corner) in outline[..outline.len() - 1].iter().enumerate() {
+                let point = Point::new(corner.x as f32 / 256.0, corner.y as f32 / 256.0);
+                if index == 0 { polygons.begin(point) } else { polygons.line(point) }
+            }
+            polygons.end();
+        }
+        polygons
+    }
+
     /// The pieces that bound outlines.
-    fn pieces_of(outlines: &[Vec<FixedPoint>], rule: FillRule) -> Option<Vec<FixedPoint>> {
-        let points: Vec<FixedPoint> = outlines.concat();
-        let ends = outlines.iter().scan(0, |end, outline| {
-            *end += outline.len();
-            Some(*end)
-        });
-        let ends: Vec<usize> = ends.collect();
-        let mut simplicity = Simplicity::default();
-        assert_ne!(simplicity.sweep_outlines(&points, &ends), None);
+    fn pieces_of(outlines: &[Vec<FixedPoint>], rule: FillRule) -> Option<Vec<Vec<FixedPoint>>> {
+        let polygons = polygons(outlines);
         let found = SimdLevel::available().into_iter().map(|level| {
             let mut resolver = Resolver::default();
-            let found = dispatch!(level, simd => resolver.resolve(simd, &points, simplicity.sides(), rule));
-            found.then(|| resolver.pieces().concat())
+            let found = dispatch!(level, simd => resolver.resolve(simd, &polygons, rule));
+            found.then(|| resolver.pieces().map(<[_]>::to_vec).collect())
         });
         let found: Vec<_> = found.collect();
         assert!(found.windows(2).all(|pair| pair[0] == pair[1]), "levels differ");
@@ -541,16 +538,12 @@ mod tests {
 
     /// How much of each pixel is inside by summed areas of the pieces.
     fn resolved(level: SimdLevel, outlines: &[Vec<FixedPoint>], rule: FillRule) -> Vec<f64> {
-        let mut points: Vec<FixedPoint> = outlines.concat();
-        let mut starts = Vec::new();
-        let mut first = 0;
-        for outline in outlines {
-            starts.extend(first..first + outline.len() as u32 - 1);
-            first += outline.len() as u32;
-        }
-        if let Some(pieces) = pieces_of(outlines, rule) {
-            starts = (0..pieces.len() as u32).step_by(2).collect();
-            points = pieces;
+        let pieces = pieces_of(outlines, rule).unwrap_or_else(|| outlines.to_vec());
+        let points = pieces.concat();
+        let (mut starts, mut first) = (Vec::new(), 0);
+        for piece in pieces {
+            starts.extend(first..first + piece.len() as u32 - 1);
+            first += piece.len() as u32;
         }
         let mut cells = Accumulator::default();
         cells.resize(WIDTH, 2);
@@ -632,9 +625,12 @@ mod tests {
         }
         // Of one in another, by the nonzero rule, the outer is left; of two that overlap, what is inside goes.
         let nested = pieces_of(&[frame(300, 700, 9000, 3000), frame(900, 1000, 8000, 2600)], FillRule::NonZero);
-        assert_eq!(nested.map(|pieces| pieces.len()), Some(4));
+        let outer = [(300, 3000), (9000, 3000), (9000, 700), (300, 700)];
+        assert_eq!(nested, Some(vec![closed(outer)]), "with its inside on the left");
         let overlapping = pieces_of(&[frame(0, 0, 512, 1024), frame(256, 512, 768, 2048)], FillRule::NonZero).unwrap();
-        let mut upright: Vec<_> = overlapping.as_chunks::<2>().0.iter().map(|[a, b]| (a.x, a.y, b.y)).collect();
+        let edges = overlapping.iter().flat_map(|piece| piece.windows(2));
+        let mut upright: Vec<_> =
+            edges.filter(|pair| pair[0].y != pair[1].y).map(|pair| (pair[0].x, pair[0].y, pair[1].y)).collect();
         upright.sort_unstable();
         assert_eq!(upright, [(0, 0, 1024), (256, 1024, 2048), (512, 512, 0), (768, 2048, 512)]);
     }

@@ -15,9 +15,9 @@
 //! assert_eq!(grid, [*b"##......", *b"..####..", *b"......##"]);
 //! ```
 
-mod apart;
 pub(crate) mod batch;
 pub(crate) mod bins;
+mod boxes;
 pub(crate) mod cell;
 pub mod circle;
 mod cut;
@@ -25,10 +25,10 @@ pub(crate) mod edge;
 pub(crate) mod exact;
 pub(crate) mod kernel;
 pub mod line;
+mod orientation;
 pub mod polygon;
 pub(crate) mod round_rect;
 pub(crate) mod sample;
-mod simple;
 mod stair;
 pub(crate) mod sweep;
 pub mod triangulate;

@@ -14,7 +14,7 @@ use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
 use crate::path::round_rect::{may_be_round_rect, round_rect};
 use crate::path::stroke::{StrokeScratch, stroke};
-use crate::raster::bins::{BandItem, BandList, Boundary, Crossings, EdgeBins, Role, extent};
+use crate::raster::bins::{BandItem, BandList, Boundary, EdgeBins, Role, extent};
 use crate::raster::round_rect::RoundRect;
 use crate::style::{Antialias, FillRule};
 
@@ -165,8 +165,8 @@ impl Chunk {
             }
         }
         let crossings = (antialias == Antialias::Exact).then_some(match geometry {
-            Geometry::Fill { rule, .. } => Crossings { rule: *rule, likely: false },
-            _ => Crossings { rule: FillRule::NonZero, likely: true },
+            Geometry::Fill { rule, .. } => *rule,
+            _ => FillRule::NonZero,
         });
         self.bins.add(simd, item, &self.polygons, bounds, bounds.right >= frame.right, crossings);
     }

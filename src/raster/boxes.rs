@@ -1,0 +1,316 @@
+//! A tree of boxes around edges, by which those are found that may meet.
+//!
+//! Edges that follow each other lie near each other: eight of them are a *node*, eight nodes one of the level above. A box is
+//! compared with eight at once.
+
+use fearless_simd::i32x8;
+use fearless_simd::prelude::*;
+
+use super::batch::coordinates;
+use super::edge::FixedPoint;
+use crate::num::lanes::{max_i32, min_i32};
+
+/// A box with its sides.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    left: i32,
+    top: i32,
+    right: i32,
+    bottom: i32,
+}
+
+/// The boxes of up to eight edges or nodes. Where there are fewer, the others are empty.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    left: [i32; 8],
+    top: [i32; 8],
+    right: [i32; 8],
+    bottom: [i32; 8],
+    around: Bounds,
+    /// The first of them: the number of the corner at which an edge starts, or of a node in the level below.
+    first: u32,
+    /// The first and the last edge of the outline that all of them belong to; meaningless where they do not.
+    outline: [u32; 2],
+    /// Whether some go to the right, to the left, down and up; all four where they are of several outlines.
+    ways: u8,
+}
+
+const RIGHT: u8 = 1;
+const LEFT: u8 = 2;
+const DOWN: u8 = 4;
+const UP: u8 = 8;
+
+/// Two nodes of a level, or one twice, whose edges are still to be compared.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    level: u32,
+    one: u32,
+    other: u32,
+}
+
+/// The tree, level by level from the edges upwards.
+#[derive(Debug, Default)]
+pub(super) struct Boxes {
+    levels: Vec<Vec<Node>>,
+    height: usize,
+    pairs: Vec<Pair>,
+}
+
+/// An edge: the numbers of its corners.
+pub(super) type Numbers = [u32; 2];
+
+impl Boxes {
+    pub(super) fn clear(&mut self) {
+        self.levels.iter_mut().for_each(Vec::clear);
+        self.height = 0;
+    }
+
+    /// Adds the edges of an outline, which are not without length: those between `corners`, the last of which is the first one once more.
+    /// The first has number `first`.
+    #[inline(always)]
+    pub(super) fn add<S: Simd>(&mut self, simd: S, corners: &[FixedPoint], first: u32) {
+        let outline = [first, first + (corners.len().max(2) - 2) as u32];
+        if self.levels.is_empty() {
+            self.levels.push(Vec::new());
+        }
+        let Some(edges) = self.levels.first_mut() else { return };
+        for (index, nine) in (first..).step_by(8).zip(corners.windows(9).step_by(8)) {
+            if let Some(nine) = nine.first_chunk::<9>() {
+                edges.push(Node::of_eight(simd, nine, index, outline));
+            }
+        }
+        let rest = (corners.len().max(1) - 1) / 8 * 8;
+        if let Some(corners) = corners.get(rest..)
+            && corners.len() > 1
+        {
+            edges.push(Node::of_edges(corners, first + rest as u32, outline));
+        }
+    }
+
+    /// Builds the levels above the edges.
+    #[inline(always)]
+    pub(super) fn build(&mut self) {
+        self.height = 1;
+        while let Some((below, above)) = self.levels.split_at_mut_checked(self.height)
+            && let Some(below) = below.last()
+            && below.len() > 1
+        {
+            let nodes = (0..).step_by(8).zip(below.chunks(8)).map(|(first, nodes)| Node::of_nodes(nodes, first));
+            match above.first_mut() {
+                Some(level) => level.extend(nodes),
+                None => {
+                    let level = nodes.collect();
+                    self.levels.push(level);
+                }
+            }
+            self.height += 1;
+        }
+    }
+
+    #[inline(always)]
+    fn node(&self, level: u32, index: u32) -> Option<&Node> {
+        self.levels.get(level as usize)?.get(index as usize)
+    }
+
+    /// Calls `meet` with any two edges whose boxes meet, and that do not follow each other. False where `looks` do not suffice.
+    #[inline(always)]
+    pub(super) fn for_pairs<S: Simd>(
+        &mut self,
+        simd: S,
+        looks: &mut usize,
+        mut meet: impl FnMut(Numbers, Numbers),
+    ) -> bool {
+        let Some(top) = self.height.checked_sub(1) else { return true };
+        let mut pairs = core::mem::take(&mut self.pairs);
+        pairs.clear();
+        pairs.push(Pair { level: top as u32, one: 0, other: 0 });
+        while let Some(Pair { level, one, other }) = pairs.pop() {
+            let (Some(own), Some(others)) = (self.node(level, one), self.node(level, other)) else { break };
+            if one == other && own.is_monotone() {
+                continue;
+            }
+            let mut lanes = own.near(simd, others.around);
+            let Some(rest) = looks.checked_sub(1 + lanes.count_ones() as usize) else {
+                self.pairs = pairs;
+                return false;
+            };
+            *looks = rest;
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros();
+                lanes &= lanes - 1;
+                let mut near = others.near(simd, own.bounds(lane));
+                if level > 0 {
+                    if one == other {
+                        near &= !0 << lane;
+                    }
+                    while near != 0 {
+                        let index = near.trailing_zeros();
+                        near &= near - 1;
+                        pairs.push(Pair { level: level - 1, one: own.first + lane, other: others.first + index });
+                    }
+                    continue;
+                }
+                if one == other {
+                    near &= !3 << lane;
+                } else if lane == 7 && others.first == own.first + 8 && own.outline == others.outline {
+                    near &= !1;
+                }
+                while near != 0 {
+                    let (edge, other) = (own.first + lane, others.first + near.trailing_zeros());
+                    near &= near - 1;
+                    if own.outline != [edge, other] {
+                        meet(own.numbers(edge), others.numbers(other));
+                    }
+                }
+            }
+        }
+        self.pairs = pairs;
+        true
+    }
+
+    /// Calls `found` with the edges whose boxes lie beside a point, to its left or around it. False where `looks` do not suffice.
+    #[inline(always)]
+    pub(super) fn for_left_of<S: Simd>(
+        &mut self,
+        simd: S,
+        point: FixedPoint,
+        looks: &mut usize,
+        mut found: impl FnMut(Numbers),
+    ) -> bool {
+        let Some(top) = self.height.checked_sub(1) else { return true };
+        let beside = Bounds { left: i32::MIN, top: point.y, right: point.x, bottom: point.y };
+        let mut pairs = core::mem::take(&mut self.pairs);
+        pairs.clear();
+        pairs.push(Pair { level: top as u32, one: 0, other: 0 });
+        while let Some(Pair { level, one, .. }) = pairs.pop() {
+            let Some(node) = self.node(level, one) else { break };
+            let mut near = node.near(simd, beside);
+            let Some(rest) = looks.checked_sub(1) else {
+                self.pairs = pairs;
+                return false;
+            };
+            *looks = rest;
+            while near != 0 {
+                let index = node.first + near.trailing_zeros();
+                near &= near - 1;
+                if level > 0 {
+                    pairs.push(Pair { level: level - 1, one: index, other: index });
+                } else {
+                    found(node.numbers(index));
+                }
+            }
+        }
+        self.pairs = pairs;
+        true
+    }
+}
+
+impl Node {
+    const EMPTY: Self = Self {
+        left: [i32::MAX; 8],
+        top: [i32::MAX; 8],
+        right: [i32::MIN; 8],
+        bottom: [i32::MIN; 8],
+        around: Bounds::EMPTY,
+        first: 0,
+        outline: [0; 2],
+        ways: 0,
+    };
+
+    /// Edges between `corners`, at most nine, of which the first is number `first`.
+    #[inline(always)]
+    fn of_edges(corners: &[FixedPoint], first: u32, outline: [u32; 2]) -> Self {
+        let mut node = Self { first, outline, ..Self::EMPTY };
+        let Self { left, top, right, bottom, around, ways, .. } = &mut node;
+        let sides = left.iter_mut().zip(top).zip(right.iter_mut().zip(bottom));
+        for (pair, ((left, top), (right, bottom))) in corners.windows(2).zip(sides) {
+            let [a, b] = pair else { break };
+            (*left, *right) = (a.x.min(b.x), a.x.max(b.x));
+            (*top, *bottom) = (a.y.min(b.y), a.y.max(b.y));
+            *around = around.with(Bounds { left: *left, top: *top, right: *right, bottom: *bottom });
+            let way = |is_so: bool, way: u8| if is_so { way } else { 0 };
+            *ways |= way(a.x < b.x, RIGHT) | way(a.x > b.x, LEFT) | way(a.y < b.y, DOWN) | way(a.y > b.y, UP);
+        }
+        node
+    }
+
+    /// The edges between nine corners.
+    #[inline(always)]
+    fn of_eight<S: Simd>(simd: S, corners: &[FixedPoint; 9], first: u32, outline: [u32; 2]) -> Self {
+        let [start @ .., _] = corners;
+        let [_, end @ ..] = corners;
+        let ((from_x, from_y), (to_x, to_y)) = (coordinates(simd, start), coordinates(simd, end));
+        let (left, right) = (min_i32(from_x, to_x), max_i32(from_x, to_x));
+        let (top, bottom) = (min_i32(from_y, to_y), max_i32(from_y, to_y));
+        let way = |low: i32x8<S>, high: i32x8<S>, way: u8| if low.simd_lt(high).to_bitmask() != 0 { way } else { 0 };
+        let across = way(from_x, to_x, RIGHT) | way(to_x, from_x, LEFT);
+        let ways = across | way(from_y, to_y, DOWN) | way(to_y, from_y, UP);
+        let (left, right, top, bottom) = (left.to_array(), right.to_array(), top.to_array(), bottom.to_array());
+        let least = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.min(b).min(c.min(d)).min(e.min(f).min(g.min(h)));
+        let greatest = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)));
+        let around = Bounds { left: least(left), top: least(top), right: greatest(right), bottom: greatest(bottom) };
+        Self { left, top, right, bottom, around, first, outline, ways }
+    }
+
+    /// At most eight nodes, of which the first is number `first`.
+    #[inline(always)]
+    fn of_nodes(nodes: &[Self], first: u32) -> Self {
+        let outline = nodes.first().map_or([0; 2], |node| node.outline);
+        let mut node = Self { first, outline, ..Self::EMPTY };
+        let Self { left, top, right, bottom, around, ways, .. } = &mut node;
+        let sides = left.iter_mut().zip(top).zip(right.iter_mut().zip(bottom));
+        for (child, ((left, top), (right, bottom))) in nodes.iter().zip(sides) {
+            (*left, *top) = (child.around.left, child.around.top);
+            (*right, *bottom) = (child.around.right, child.around.bottom);
+            *around = around.with(child.around);
+            *ways |= if child.outline == outline { child.ways } else { RIGHT | LEFT | DOWN | UP };
+        }
+        node
+    }
+
+    /// Whether all go one way across and one way down, and so do not meet but where they follow each other.
+    #[inline(always)]
+    fn is_monotone(&self) -> bool {
+        self.ways & (RIGHT | LEFT) != RIGHT | LEFT && self.ways & (DOWN | UP) != DOWN | UP
+    }
+
+    /// The corners of an edge.
+    #[inline(always)]
+    fn numbers(&self, edge: u32) -> Numbers {
+        let [first, last] = self.outline;
+        [edge, if edge == last { first } else { edge + 1 }]
+    }
+
+    /// The box in lane `lane`.
+    #[inline(always)]
+    fn bounds(&self, lane: u32) -> Bounds {
+        let at = |lanes: &[i32; 8]| lanes.get(lane as usize).copied().unwrap_or(0);
+        Bounds { left: at(&self.left), top: at(&self.top), right: at(&self.right), bottom: at(&self.bottom) }
+    }
+
+    /// Which boxes meet another, as bits.
+    #[inline(always)]
+    fn near<S: Simd>(&self, simd: S, other: Bounds) -> u32 {
+        let splat = |v: i32| i32x8::splat(simd, v);
+        let load = |lanes: &[i32; 8]| i32x8::load_array_ref(simd, lanes);
+        let apart = splat(other.left).simd_gt(load(&self.right))
+            | load(&self.left).simd_gt(splat(other.right))
+            | splat(other.top).simd_gt(load(&self.bottom))
+            | load(&self.top).simd_gt(splat(other.bottom));
+        !(apart.to_bitmask() as u32) & 0xff
+    }
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
+
+    #[inline(always)]
+    fn with(self, other: Self) -> Self {
+        Self {
+            left: self.left.min(other.left),
+            top: self.top.min(other.top),
+            right: self.right.max(other.right),
+            bottom: self.bottom.max(other.bottom),
+        }
+    }
+}
