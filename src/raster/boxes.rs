@@ -3,8 +3,10 @@
 //! Edges that follow each other lie near each other: eight of them are a *node*, eight nodes one of the level above. A box is
 //! compared with eight at once.
 
-use fearless_simd::i32x8;
+use core::ops::Range;
+
 use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, i32x8};
 
 use super::batch::coordinates;
 use super::edge::FixedPoint;
@@ -33,6 +35,8 @@ struct Node {
     outline: [u32; 2],
     /// Whether some go to the right, to the left, down and up; all four where they are of several outlines.
     ways: u8,
+    /// Whether all go one way, and so meet only where they follow each other.
+    is_ordered: bool,
 }
 
 const RIGHT: u8 = 1;
@@ -65,18 +69,35 @@ impl Boxes {
         self.height = 0;
     }
 
-    /// Adds the edges of an outline, which are not without length: those between `corners`, the last of which is the first one once more.
-    /// The first has number `first`.
+    /// The number of nodes around edges so far.
     #[inline(always)]
-    pub(super) fn add<S: Simd>(&mut self, simd: S, corners: &[FixedPoint], first: u32) {
+    pub(super) fn len(&self) -> usize {
+        self.levels.first().map_or(0, Vec::len)
+    }
+
+    /// Keeps so many of them.
+    #[inline(always)]
+    pub(super) fn truncate(&mut self, len: usize) {
+        if let Some(edges) = self.levels.first_mut() {
+            edges.truncate(len);
+        }
+    }
+
+    /// Adds the edges of an outline: those between `corners`, the last of which is the first one once more.
+    /// The first has number `first`. False, and nothing is added, if one of them has no length.
+    #[inline(always)]
+    pub(super) fn add<S: Simd>(&mut self, simd: S, corners: &[FixedPoint], first: u32) -> bool {
         let outline = [first, first + (corners.len().max(2) - 2) as u32];
         if self.levels.is_empty() {
             self.levels.push(Vec::new());
         }
-        let Some(edges) = self.levels.first_mut() else { return };
+        let Some(edges) = self.levels.first_mut() else { return true };
+        let (start, mut have_length) = (edges.len(), true);
         for (index, nine) in (first..).step_by(8).zip(corners.windows(9).step_by(8)) {
             if let Some(nine) = nine.first_chunk::<9>() {
-                edges.push(Node::of_eight(simd, nine, index, outline));
+                let (node, all) = Node::of_eight(simd, nine, index, outline);
+                edges.push(node);
+                have_length &= all;
             }
         }
         let rest = (corners.len().max(1) - 1) / 8 * 8;
@@ -84,7 +105,24 @@ impl Boxes {
             && corners.len() > 1
         {
             edges.push(Node::of_edges(corners, first + rest as u32, outline));
+            have_length &= corners.windows(2).all(|pair| matches!(pair, [a, b] if a != b));
         }
+        if !have_length {
+            edges.truncate(start);
+        }
+        have_length
+    }
+
+    /// The leftmost corner of the outline whose edges are in `nodes`; of several the last.
+    #[inline(always)]
+    pub(super) fn leftmost(&self, nodes: Range<usize>, corners: &[FixedPoint]) -> Option<u32> {
+        let nodes = self.levels.first()?.get(nodes)?;
+        let left = nodes.iter().fold(i32::MAX, |left, node| left.min(node.around.left));
+        nodes.iter().rev().filter(|node| node.around.left == left).find_map(|node| {
+            let [_, last] = node.outline;
+            let own = corners.get(node.first as usize..=last.min(node.first + 7) as usize)?;
+            Some(node.first + own.iter().rposition(|corner| corner.x == left)? as u32)
+        })
     }
 
     /// Builds the levels above the edges.
@@ -126,7 +164,7 @@ impl Boxes {
         pairs.push(Pair { level: top as u32, one: 0, other: 0 });
         while let Some(Pair { level, one, other }) = pairs.pop() {
             let (Some(own), Some(others)) = (self.node(level, one), self.node(level, other)) else { break };
-            if one == other && own.is_monotone() {
+            if one == other && own.is_ordered {
                 continue;
             }
             let mut lanes = own.near(simd, others.around);
@@ -215,6 +253,7 @@ impl Node {
         first: 0,
         outline: [0; 2],
         ways: 0,
+        is_ordered: false,
     };
 
     /// Edges between `corners`, at most nine, of which the first is number `first`.
@@ -231,12 +270,13 @@ impl Node {
             let way = |is_so: bool, way: u8| if is_so { way } else { 0 };
             *ways |= way(a.x < b.x, RIGHT) | way(a.x > b.x, LEFT) | way(a.y < b.y, DOWN) | way(a.y > b.y, UP);
         }
+        node.is_ordered = is_one_way(node.ways);
         node
     }
 
-    /// The edges between nine corners.
+    /// The edges between nine corners, and whether all have a length.
     #[inline(always)]
-    fn of_eight<S: Simd>(simd: S, corners: &[FixedPoint; 9], first: u32, outline: [u32; 2]) -> Self {
+    fn of_eight<S: Simd>(simd: S, corners: &[FixedPoint; 9], first: u32, outline: [u32; 2]) -> (Self, bool) {
         let [start @ .., _] = corners;
         let [_, end @ ..] = corners;
         let ((from_x, from_y), (to_x, to_y)) = (coordinates(simd, start), coordinates(simd, end));
@@ -245,11 +285,18 @@ impl Node {
         let way = |low: i32x8<S>, high: i32x8<S>, way: u8| if low.simd_lt(high).to_bitmask() != 0 { way } else { 0 };
         let across = way(from_x, to_x, RIGHT) | way(to_x, from_x, LEFT);
         let ways = across | way(from_y, to_y, DOWN) | way(to_y, from_y, UP);
+        let have_length = (from_x.simd_eq(to_x) & from_y.simd_eq(to_y)).to_bitmask() == 0;
+        // Each goes some way along the line from the first corner to the last. The margin is more than what rounding may add.
+        let [start, .., end] = *corners;
+        let (across, down) = ((to_x - from_x).to_float::<f32x8<S>>(), (to_y - from_y).to_float::<f32x8<S>>());
+        let (across, down) = (across * (end.x - start.x) as f32, down * (end.y - start.y) as f32);
+        let margin = (across.abs() + down.abs()) * (1.0 / (1 << 20) as f32);
+        let is_ordered = (across + down).simd_gt(margin).to_bitmask() == 0xff;
         let (left, right, top, bottom) = (left.to_array(), right.to_array(), top.to_array(), bottom.to_array());
         let least = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.min(b).min(c.min(d)).min(e.min(f).min(g.min(h)));
         let greatest = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)));
         let around = Bounds { left: least(left), top: least(top), right: greatest(right), bottom: greatest(bottom) };
-        Self { left, top, right, bottom, around, first, outline, ways }
+        (Self { left, top, right, bottom, around, first, outline, ways, is_ordered }, have_length)
     }
 
     /// At most eight nodes, of which the first is number `first`.
@@ -265,13 +312,8 @@ impl Node {
             *around = around.with(child.around);
             *ways |= if child.outline == outline { child.ways } else { RIGHT | LEFT | DOWN | UP };
         }
+        node.is_ordered = is_one_way(node.ways);
         node
-    }
-
-    /// Whether all go one way across and one way down, and so do not meet but where they follow each other.
-    #[inline(always)]
-    fn is_monotone(&self) -> bool {
-        self.ways & (RIGHT | LEFT) != RIGHT | LEFT && self.ways & (DOWN | UP) != DOWN | UP
     }
 
     /// The corners of an edge.
@@ -299,6 +341,12 @@ impl Node {
             | load(&self.top).simd_gt(splat(other.bottom));
         !(apart.to_bitmask() as u32) & 0xff
     }
+}
+
+/// Whether all go one way across and one way down.
+#[inline(always)]
+fn is_one_way(ways: u8) -> bool {
+    ways & (RIGHT | LEFT) != RIGHT | LEFT && ways & (DOWN | UP) != DOWN | UP
 }
 
 impl Bounds {
