@@ -93,19 +93,27 @@ impl Boxes {
         }
         let Some(edges) = self.levels.first_mut() else { return true };
         let (start, mut have_length) = (edges.len(), true);
-        for (index, nine) in (first..).step_by(8).zip(corners.windows(9).step_by(8)) {
+        let mut index = first;
+        let mut add = |nine: &[FixedPoint; 9], count: usize| {
+            let (node, all) = Node::of_edges(simd, nine, count, index, outline);
+            edges.push(node);
+            have_length &= all;
+            index += 8;
+        };
+        for nine in corners.windows(9).step_by(8) {
             if let Some(nine) = nine.first_chunk::<9>() {
-                let (node, all) = Node::of_eight(simd, nine, index, outline);
-                edges.push(node);
-                have_length &= all;
+                add(nine, 8);
             }
         }
-        let rest = (corners.len().max(1) - 1) / 8 * 8;
-        if let Some(corners) = corners.get(rest..)
-            && corners.len() > 1
+        let rest = corners.get((corners.len().max(1) - 1) / 8 * 8..).unwrap_or(&[]);
+        if let [first, others @ ..] = rest
+            && let Some(count) = rest.len().checked_sub(1).filter(|count| *count > 0)
         {
-            edges.push(Node::of_edges(corners, first + rest as u32, outline));
-            have_length &= corners.windows(2).all(|pair| matches!(pair, [a, b] if a != b));
+            let mut nine = [*first; 9];
+            for (corner, other) in nine.iter_mut().skip(1).zip(others) {
+                *corner = *other;
+            }
+            add(&nine, count);
         }
         if !have_length {
             edges.truncate(start);
@@ -256,42 +264,39 @@ impl Node {
         is_ordered: false,
     };
 
-    /// Edges between `corners`, at most nine, of which the first is number `first`.
+    /// The first `count` of the edges between nine corners, and whether all of them have a length. The first corner is number `first`.
     #[inline(always)]
-    fn of_edges(corners: &[FixedPoint], first: u32, outline: [u32; 2]) -> Self {
-        let mut node = Self { first, outline, ..Self::EMPTY };
-        let Self { left, top, right, bottom, around, ways, .. } = &mut node;
-        let sides = left.iter_mut().zip(top).zip(right.iter_mut().zip(bottom));
-        for (pair, ((left, top), (right, bottom))) in corners.windows(2).zip(sides) {
-            let [a, b] = pair else { break };
-            (*left, *right) = (a.x.min(b.x), a.x.max(b.x));
-            (*top, *bottom) = (a.y.min(b.y), a.y.max(b.y));
-            *around = around.with(Bounds { left: *left, top: *top, right: *right, bottom: *bottom });
-            let way = |is_so: bool, way: u8| if is_so { way } else { 0 };
-            *ways |= way(a.x < b.x, RIGHT) | way(a.x > b.x, LEFT) | way(a.y < b.y, DOWN) | way(a.y > b.y, UP);
-        }
-        node.is_ordered = is_one_way(node.ways);
-        node
-    }
-
-    /// The edges between nine corners, and whether all have a length.
-    #[inline(always)]
-    fn of_eight<S: Simd>(simd: S, corners: &[FixedPoint; 9], first: u32, outline: [u32; 2]) -> (Self, bool) {
+    fn of_edges<S: Simd>(
+        simd: S,
+        corners: &[FixedPoint; 9],
+        count: usize,
+        first: u32,
+        outline: [u32; 2],
+    ) -> (Self, bool) {
         let [start @ .., _] = corners;
         let [_, end @ ..] = corners;
         let ((from_x, from_y), (to_x, to_y)) = (coordinates(simd, start), coordinates(simd, end));
-        let (left, right) = (min_i32(from_x, to_x), max_i32(from_x, to_x));
-        let (top, bottom) = (min_i32(from_y, to_y), max_i32(from_y, to_y));
-        let way = |low: i32x8<S>, high: i32x8<S>, way: u8| if low.simd_lt(high).to_bitmask() != 0 { way } else { 0 };
+        let others = !0_u32 << count & 0xff;
+        let have_length = (from_x.simd_eq(to_x) & from_y.simd_eq(to_y)).to_bitmask() as u32 & !others == 0;
+        let way = |low: i32x8<S>, high: i32x8<S>, way: u8| {
+            if low.simd_lt(high).to_bitmask() as u32 & !others != 0 { way } else { 0 }
+        };
         let across = way(from_x, to_x, RIGHT) | way(to_x, from_x, LEFT);
         let ways = across | way(from_y, to_y, DOWN) | way(to_y, from_y, UP);
-        let have_length = (from_x.simd_eq(to_x) & from_y.simd_eq(to_y)).to_bitmask() == 0;
         // Each goes some way along the line from the first corner to the last. The margin is more than what rounding may add.
-        let [start, .., end] = *corners;
+        let chord = corners.get(count).map_or((0, 0), |end| (end.x - start[0].x, end.y - start[0].y));
         let (across, down) = ((to_x - from_x).to_float::<f32x8<S>>(), (to_y - from_y).to_float::<f32x8<S>>());
-        let (across, down) = (across * (end.x - start.x) as f32, down * (end.y - start.y) as f32);
+        let (across, down) = (across * chord.0 as f32, down * chord.1 as f32);
         let margin = (across.abs() + down.abs()) * (1.0 / (1 << 20) as f32);
-        let is_ordered = (across + down).simd_gt(margin).to_bitmask() == 0xff;
+        let is_ordered = (across + down).simd_gt(margin).to_bitmask() as u32 | others == 0xff;
+        let (mut left, mut right) = (min_i32(from_x, to_x), max_i32(from_x, to_x));
+        let (mut top, mut bottom) = (min_i32(from_y, to_y), max_i32(from_y, to_y));
+        if count < 8 {
+            let is_one = i32x8::load_array(simd, [0, 1, 2, 3, 4, 5, 6, 7]).simd_lt(count as i32);
+            let (low, high) = (i32x8::splat(simd, i32::MIN), i32x8::splat(simd, i32::MAX));
+            (left, top) = (is_one.select(left, high), is_one.select(top, high));
+            (right, bottom) = (is_one.select(right, low), is_one.select(bottom, low));
+        }
         let (left, right, top, bottom) = (left.to_array(), right.to_array(), top.to_array(), bottom.to_array());
         let least = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.min(b).min(c.min(d)).min(e.min(f).min(g.min(h)));
         let greatest = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)));

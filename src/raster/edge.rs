@@ -102,12 +102,14 @@ fn rounded<S: Simd>(simd: S, block: [Point; 4]) -> [FixedPoint; 4] {
     bytemuck::cast(truncate_f32(v.round_ties_even()).to_array())
 }
 
-/// A closed polygon's corners in fixed point, the first one once more at the end.
+/// A closed polygon's corners in fixed point, the first one once more at the end, if it is not there.
 #[inline(always)]
 pub(super) fn append_closed<S: Simd>(simd: S, polygon: &[Point], out: &mut Vec<FixedPoint>) {
     let start = out.len();
     append_fixed(simd, polygon, out);
-    if let Some(first) = out.get(start) {
+    if let Some(first) = out.get(start)
+        && (out.last() != Some(first) || out.len() == start + 1)
+    {
         out.push(*first);
     }
 }

@@ -277,11 +277,11 @@ impl Resolver {
                     };
                     let mut last = *start;
                     for crossing in &*along {
-                        pieces.follow(&[last, crossing.place], bounds(left));
+                        pieces.step(last, crossing.place, bounds(left));
                         last = crossing.place;
                         left += crossing.change;
                     }
-                    pieces.follow(&[last, *end], bounds(left));
+                    pieces.step(last, *end, bounds(left));
                     from += 1;
                 }
             }
@@ -418,16 +418,36 @@ fn part_exactly(length: i32, Fraction { numerator, denominator }: Fraction) -> i
 fn list_along(corners: &[FixedPoint], crossings: &[Crossing], edge: Numbers, head: u32, along: &mut Vec<Crossing>) {
     /// More than the error of two quotients up to 1.
     const SURE: f64 = 1e-14;
+    const FEW: usize = 16;
+    let is_after = |a: &Crossing, b: &Crossing| {
+        let distance = a.part - b.part;
+        if distance.abs() > SURE { distance > 0.0 } else { compare(corners, edge, a.other, b.other).is_gt() }
+    };
     along.clear();
     let mut number = head;
     while let Some(crossing) = crossings.get(number as usize) {
+        let mut place = along.len();
         along.push(*crossing);
+        // Mostly there are two or three.
+        while place <= FEW
+            && place > 0
+            && let Some([before, own]) = along.get_mut(place - 1..).and_then(|rest| rest.first_chunk_mut())
+            && is_after(before, own)
+        {
+            core::mem::swap(before, own);
+            place -= 1;
+        }
         number = crossing.next;
     }
-    if along.len() > 1 {
+    if along.len() > FEW {
         along.sort_unstable_by(|a, b| {
-            let distance = a.part - b.part;
-            if distance.abs() > SURE { distance.total_cmp(&0.0) } else { compare(corners, edge, a.other, b.other) }
+            if is_after(a, b) {
+                Ordering::Greater
+            } else if is_after(b, a) {
+                Ordering::Less
+            } else {
+                Ordering::Equal
+            }
         });
     }
 }
@@ -457,16 +477,32 @@ impl Pieces {
     /// Goes along `points`, which bound the inside in `way`.
     #[inline(always)]
     fn follow(&mut self, points: &[FixedPoint], way: i32) {
-        let Some((first, rest)) = points.split_first() else { return };
-        if way != self.way || way != 0 && self.points.last() != Some(first) {
+        if let Some((first, rest)) = points.split_first() {
+            self.turn(*first, way);
+            if way != 0 {
+                self.points.extend_from_slice(rest);
+            }
+        }
+    }
+
+    /// Goes from a point to another.
+    #[inline(always)]
+    fn step(&mut self, from: FixedPoint, to: FixedPoint, way: i32) {
+        self.turn(from, way);
+        if way != 0 && from != to {
+            self.points.push(to);
+        }
+    }
+
+    /// Goes on from a point, where another piece may begin.
+    #[inline(always)]
+    fn turn(&mut self, at: FixedPoint, way: i32) {
+        if way != self.way || way != 0 && self.points.last() != Some(&at) {
             self.finish();
             self.way = way;
             if way != 0 {
-                self.points.push(*first);
+                self.points.push(at);
             }
-        }
-        if way != 0 {
-            self.points.extend_from_slice(rest);
         }
     }
 
