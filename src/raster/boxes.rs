@@ -37,6 +37,8 @@ struct Node {
     ways: u8,
     /// Whether all go one way, and so meet only where they follow each other.
     is_ordered: bool,
+    /// Of nodes, those of which this holds, as bits.
+    ordered: u8,
 }
 
 const RIGHT: u8 = 1;
@@ -141,12 +143,13 @@ impl Boxes {
             && let Some(below) = below.last()
             && below.len() > 1
         {
-            let nodes = (0..).step_by(8).zip(below.chunks(8)).map(|(first, nodes)| Node::of_nodes(nodes, first));
-            match above.first_mut() {
-                Some(level) => level.extend(nodes),
-                None => {
-                    let level = nodes.collect();
-                    self.levels.push(level);
+            if above.is_empty() {
+                self.levels.push(Vec::new());
+                continue;
+            }
+            if let Some(level) = above.first_mut() {
+                for (first, nodes) in (0..).step_by(8).zip(below.chunks(8)) {
+                    level.push(Node::of_nodes(nodes, first));
                 }
             }
             self.height += 1;
@@ -167,14 +170,14 @@ impl Boxes {
         mut meet: impl FnMut(Numbers, Numbers),
     ) -> bool {
         let Some(top) = self.height.checked_sub(1) else { return true };
+        if self.node(top as u32, 0).is_none_or(|node| node.is_ordered) {
+            return true;
+        }
         let mut pairs = core::mem::take(&mut self.pairs);
         pairs.clear();
         pairs.push(Pair { level: top as u32, one: 0, other: 0 });
         while let Some(Pair { level, one, other }) = pairs.pop() {
             let (Some(own), Some(others)) = (self.node(level, one), self.node(level, other)) else { break };
-            if one == other && own.is_ordered {
-                continue;
-            }
             let mut lanes = own.near(simd, others.around);
             let Some(rest) = looks.checked_sub(1 + lanes.count_ones() as usize) else {
                 self.pairs = pairs;
@@ -187,7 +190,7 @@ impl Boxes {
                 let mut near = others.near(simd, own.bounds(lane));
                 if level > 0 {
                     if one == other {
-                        near &= !0 << lane;
+                        near &= !(u32::from(own.ordered) & 1 << lane) & !0 << lane;
                     }
                     while near != 0 {
                         let index = near.trailing_zeros();
@@ -262,6 +265,7 @@ impl Node {
         outline: [0; 2],
         ways: 0,
         is_ordered: false,
+        ordered: 0,
     };
 
     /// The first `count` of the edges between nine corners, and whether all of them have a length. The first corner is number `first`.
@@ -297,11 +301,15 @@ impl Node {
             (left, top) = (is_one.select(left, high), is_one.select(top, high));
             (right, bottom) = (is_one.select(right, low), is_one.select(bottom, low));
         }
-        let (left, right, top, bottom) = (left.to_array(), right.to_array(), top.to_array(), bottom.to_array());
-        let least = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.min(b).min(c.min(d)).min(e.min(f).min(g.min(h)));
-        let greatest = |[a, b, c, d, e, f, g, h]: [i32; 8]| a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)));
-        let around = Bounds { left: least(left), top: least(top), right: greatest(right), bottom: greatest(bottom) };
-        (Self { left, top, right, bottom, around, first, outline, ways, is_ordered }, have_length)
+        let around = Bounds {
+            left: left.reduce_min(),
+            top: top.reduce_min(),
+            right: right.reduce_max(),
+            bottom: bottom.reduce_max(),
+        };
+        let (left, top, right, bottom) = (left.to_array(), top.to_array(), right.to_array(), bottom.to_array());
+        let ordered = if is_ordered { 0xff } else { 0 };
+        (Self { left, top, right, bottom, around, first, outline, ways, is_ordered, ordered }, have_length)
     }
 
     /// At most eight nodes, of which the first is number `first`.
@@ -309,9 +317,10 @@ impl Node {
     fn of_nodes(nodes: &[Self], first: u32) -> Self {
         let outline = nodes.first().map_or([0; 2], |node| node.outline);
         let mut node = Self { first, outline, ..Self::EMPTY };
-        let Self { left, top, right, bottom, around, ways, .. } = &mut node;
+        let Self { left, top, right, bottom, around, ways, ordered, .. } = &mut node;
         let sides = left.iter_mut().zip(top).zip(right.iter_mut().zip(bottom));
-        for (child, ((left, top), (right, bottom))) in nodes.iter().zip(sides) {
+        for ((lane, child), ((left, top), (right, bottom))) in nodes.iter().enumerate().zip(sides) {
+            *ordered |= u8::from(child.is_ordered) << lane;
             (*left, *top) = (child.around.left, child.around.top);
             (*right, *bottom) = (child.around.right, child.around.bottom);
             *around = around.with(child.around);
@@ -364,6 +373,154 @@ impl Bounds {
             top: self.top.min(other.top),
             right: self.right.max(other.right),
             bottom: self.bottom.max(other.bottom),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::level::{SimdLevel, dispatch};
+
+    /// Numbers below `end`.
+    struct Random(u32);
+
+    impl Random {
+        fn below(&mut self, end: i32) -> i32 {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (self.0 >> 8) as i32 % end
+        }
+    }
+
+    fn bounds(corners: &[FixedPoint], [from, to]: Numbers) -> Bounds {
+        let (a, b) = (corners[from as usize], corners[to as usize]);
+        Bounds { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
+    }
+
+    fn meets(a: Bounds, b: Bounds) -> bool {
+        a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom
+    }
+
+    /// Whether two edges have a point in common, or lie on one line.
+    fn touch(corners: &[FixedPoint], edge: Numbers, other: Numbers) -> bool {
+        let corner = |number: u32| corners[number as usize];
+        let side = |[a, b]: Numbers, c: u32| {
+            let [a, b, c] = [a, b, c].map(corner);
+            let [bx, by, cx, cy] = [b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y].map(i64::from);
+            (bx * cy - by * cx).signum()
+        };
+        let apart = |edge: Numbers, [c, d]: Numbers| side(edge, c) * side(edge, d) > 0;
+        !apart(edge, other) && !apart(other, edge)
+    }
+
+    /// Closed outlines one after another, as walks by steps or with corners anywhere; their edges and the tree.
+    fn outlines(random: &mut Random, level: SimdLevel) -> (Vec<FixedPoint>, Vec<Vec<Numbers>>, Boxes) {
+        let (mut corners, mut edges, mut boxes) = (Vec::new(), Vec::new(), Boxes::default());
+        for _ in 0..1 + random.below(4) {
+            let first = corners.len();
+            let (count, is_walk, size) = (3 + random.below(90), random.below(3) > 0, 4 + random.below(60));
+            let mut at = FixedPoint { x: random.below(size), y: random.below(size) };
+            corners.push(at);
+            while corners.len() < first + count as usize {
+                let step = |random: &mut Random| random.below(size) - if is_walk { size / 5 } else { size / 2 };
+                at = FixedPoint { x: at.x + step(random), y: at.y + step(random) };
+                if corners.last() != Some(&at) && corners[first] != at {
+                    corners.push(at);
+                }
+            }
+            corners.push(corners[first]);
+            let number = |index: usize| index as u32;
+            let last = corners.len() - 2;
+            let next = |index: usize| if index == last { first } else { index + 1 };
+            edges.push((first..=last).map(|index| [number(index), number(next(index))]).collect());
+            assert!(dispatch!(level, simd => boxes.add(simd, &corners[first..], first as u32)));
+        }
+        boxes.build();
+        (corners, edges, boxes)
+    }
+
+    #[test]
+    fn edges_that_touch_are_found_once_and_no_others_but_by_their_boxes() {
+        for level in SimdLevel::available() {
+            let mut random = Random(1);
+            let mut touching = 0;
+            for round in 0..150 {
+                let (corners, outlines, mut boxes) = outlines(&mut random, level);
+                let mut found = Vec::new();
+                let mut looks = usize::MAX;
+                assert!(dispatch!(level, simd => boxes.for_pairs(simd, &mut looks, |a, b| found.push([a, b]))));
+                found.sort_unstable();
+                assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "round {round}: twice");
+                let edges = outlines.concat();
+                for (index, edge) in edges.iter().enumerate() {
+                    for other in &edges[index + 1..] {
+                        let (follow, pair) = (edge[1] == other[0] || other[1] == edge[0], [*edge, *other]);
+                        let is_found = found.binary_search(&pair).is_ok();
+                        let (near, touch) =
+                            (meets(bounds(&corners, *edge), bounds(&corners, *other)), touch(&corners, *edge, *other));
+                        assert!(!is_found || near && !follow, "round {round}: {pair:?}");
+                        assert!(is_found || follow || !near || !touch, "round {round}: {pair:?} of {corners:?}");
+                        touching += usize::from(is_found && touch);
+                    }
+                }
+                // With fewer looks it gives up.
+                let used = usize::MAX - looks;
+                let mut few = used - 1;
+                assert!(!dispatch!(level, simd => boxes.for_pairs(simd, &mut few, |_, _| {})));
+                let mut enough = used;
+                assert!(dispatch!(level, simd => boxes.for_pairs(simd, &mut enough, |_, _| {})));
+            }
+            assert!(touching > 5000, "{touching}");
+        }
+    }
+
+    #[test]
+    fn leftmost_corners_and_edges_to_the_left_are_found() {
+        for level in SimdLevel::available() {
+            let mut random = Random(2);
+            for round in 0..150 {
+                let (corners, outlines, mut boxes) = outlines(&mut random, level);
+                let mut node = 0;
+                for edges in &outlines {
+                    let nodes = node..node + edges.len().div_ceil(8);
+                    node = nodes.end;
+                    let leftmost = edges.iter().map(|[from, _]| *from).min_by_key(|number| {
+                        let corner = corners[*number as usize];
+                        (corner.x, std::cmp::Reverse(*number))
+                    });
+                    assert_eq!(boxes.leftmost(nodes, &corners), leftmost, "round {round}");
+                }
+                assert_eq!(boxes.len(), node);
+                let point = corners[random.below(corners.len() as i32) as usize];
+                let (mut found, mut looks) = (Vec::new(), usize::MAX);
+                assert!(dispatch!(level, simd => boxes.for_left_of(simd, point, &mut looks, |edge| found.push(edge))));
+                found.sort_unstable();
+                let mut beside = outlines.concat();
+                beside.retain(|edge| {
+                    let bounds = bounds(&corners, *edge);
+                    bounds.left <= point.x && bounds.top <= point.y && point.y <= bounds.bottom
+                });
+                beside.sort_unstable();
+                assert_eq!(found, beside, "round {round}");
+            }
+        }
+    }
+
+    #[test]
+    fn edges_without_length_are_refused() {
+        let mut boxes = Boxes::default();
+        let corner = |x: i32, y: i32| FixedPoint { x, y };
+        for count in [3, 8, 9, 20] {
+            let mut corners: Vec<_> = (0..count).map(|i| corner(i * i, i * 7)).collect();
+            corners.push(corners[0]);
+            let add = |boxes: &mut Boxes, corners: &[FixedPoint]| dispatch!(SimdLevel::best(), simd => boxes.add(simd, corners, 0));
+            assert!(add(&mut boxes, &corners));
+            for index in 0..corners.len() {
+                let mut repeated = corners.clone();
+                repeated.insert(index, corners[index]);
+                let before = boxes.len();
+                assert!(!add(&mut boxes, &repeated) && boxes.len() == before, "{count}: {index}");
+            }
         }
     }
 }

@@ -418,7 +418,7 @@ fn part_exactly(length: i32, Fraction { numerator, denominator }: Fraction) -> i
 fn list_along(corners: &[FixedPoint], crossings: &[Crossing], edge: Numbers, head: u32, along: &mut Vec<Crossing>) {
     /// More than the error of two quotients up to 1.
     const SURE: f64 = 1e-14;
-    const FEW: usize = 16;
+    const FEW: usize = 4;
     let is_after = |a: &Crossing, b: &Crossing| {
         let distance = a.part - b.part;
         if distance.abs() > SURE { distance > 0.0 } else { compare(corners, edge, a.other, b.other).is_gt() }
@@ -702,6 +702,80 @@ mod tests {
             edges.filter(|pair| pair[0].y != pair[1].y).map(|pair| (pair[0].x, pair[0].y, pair[1].y)).collect();
         upright.sort_unstable();
         assert_eq!(upright, [(0, 0, 1024), (256, 1024, 2048), (512, 512, 0), (768, 2048, 512)]);
+    }
+
+    /// How often outlines wind around a point that lies on none of them.
+    fn winding(outlines: &[Vec<FixedPoint>], (x, y): (f64, f64)) -> i32 {
+        let mut winding = 0;
+        for pair in outlines.iter().flat_map(|outline| outline.windows(2)) {
+            let [a, b] = [pair[0], pair[1]].map(|p| (f64::from(p.x), f64::from(p.y)));
+            if (a.1 < y) != (b.1 < y) && a.0 + (b.0 - a.0) * (y - a.1) / (b.1 - a.1) < x {
+                winding += if a.1 < b.1 { 1 } else { -1 };
+            }
+        }
+        winding
+    }
+
+    /// The distance from a point to the nearest edge.
+    fn distance(outlines: &[Vec<FixedPoint>], (x, y): (f64, f64)) -> f64 {
+        let edges = outlines.iter().flat_map(|outline| outline.windows(2));
+        let to_edge = edges.map(|pair| {
+            let [(ax, ay), (bx, by)] = [pair[0], pair[1]].map(|p| (f64::from(p.x), f64::from(p.y)));
+            let ((vx, vy), (wx, wy)) = ((bx - ax, by - ay), (x - ax, y - ay));
+            let squared = vx * vx + vy * vy;
+            let along = if squared > 0.0 { ((vx * wx + vy * wy) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            libm::hypot(wx - along * vx, wy - along * vy)
+        });
+        to_edge.fold(f64::MAX, f64::min)
+    }
+
+    /// On few places, so that corners and edges lie on each other, as well as on many, near and far.
+    #[test]
+    fn pieces_close_and_bound_what_the_rule_says() {
+        let mut random = Random(5);
+        let (mut whole, mut cut, mut looked) = (0, 0, 0);
+        for round in 0..12_000_usize {
+            let places = [4, 6, 9, 30, 5000][round % 5];
+            let step = [1, 64, 517, 30_000][round / 5 % 4];
+            let corners = 3 + round % 11;
+            let outlines: Vec<_> = (0..1 + round % 3)
+                .map(|_| closed((0..corners).map(|_| (random.below(places) * step, random.below(places) * step))))
+                .collect();
+            for rule in [FillRule::NonZero, FillRule::EvenOdd] {
+                let pieces = pieces_of(&outlines, rule);
+                let bound = pieces.as_ref().unwrap_or(&outlines);
+                if pieces.is_some() {
+                    cut += 1
+                } else {
+                    whole += 1
+                }
+                // As many end in a place as start there.
+                let mut ends = std::collections::HashMap::new();
+                for piece in bound {
+                    *ends.entry((piece[0].x, piece[0].y)).or_insert(0) += 1;
+                    let end = piece[piece.len() - 1];
+                    *ends.entry((end.x, end.y)).or_insert(0) -= 1;
+                }
+                assert!(ends.values().all(|open| *open == 0), "round {round}: {outlines:?}");
+                for _ in 0..6 {
+                    let mut coordinate = || f64::from(random.below(places * step)) + 0.5;
+                    let point = (coordinate(), coordinate());
+                    if distance(&outlines, point) < 2.0 {
+                        continue;
+                    }
+                    looked += 1;
+                    let inside = match rule {
+                        FillRule::NonZero => winding(&outlines, point) != 0,
+                        FillRule::EvenOdd => winding(&outlines, point) % 2 != 0,
+                    };
+                    let found = winding(bound, point);
+                    // Outlines that are left as they are may all go the other way.
+                    let found = if pieces.is_some() { found } else { found.abs() };
+                    assert_eq!(found, i32::from(inside), "round {round}, {rule:?}, {point:?}: {outlines:?}");
+                }
+            }
+        }
+        assert!(whole > 1000 && cut > 15_000 && looked > 50_000, "{whole} {cut} {looked}");
     }
 
     /// Thousands of lines that all cross in one point, and a comb whose teeth all start at one height beside long lines.
