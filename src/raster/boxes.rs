@@ -123,7 +123,8 @@ impl Boxes {
         have_length
     }
 
-    /// The leftmost corner of the outline whose edges are in `nodes`; of several the last.
+    /// The leftmost corner of the outline whose edges are in `nodes`; of several the last, which is moved to the right least
+    /// ([`orientation`](super::orientation)).
     #[inline(always)]
     pub(super) fn leftmost(&self, nodes: Range<usize>, corners: &[FixedPoint]) -> Option<u32> {
         let nodes = self.levels.first()?.get(nodes)?;

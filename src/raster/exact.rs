@@ -22,12 +22,14 @@ use crate::num::lanes::round_f64;
 use crate::path::polygons::Polygons;
 use crate::style::FillRule;
 
-/// After so many looks at edges in all, and so many for each corner, outlines stay as they are: at such density, what
-/// is inside of them no longer shows.
-const LOOKS: usize = 1 << 20;
-const LOOKS_PER_CORNER: usize = 64;
-/// More crossings than that are not kept.
-const MOST_CROSSINGS: usize = 1 << 20;
+/// After so many looks at boxes in all, and so many for each corner, outlines stay as they are.
+const LOOKS: usize = 1 << 19;
+const LOOKS_PER_CORNER: usize = 16;
+
+/// Where edges cross more often, outlines stay as they are: at such density, what is inside of them no longer shows.
+const CROSSINGS: usize = 1 << 13;
+const CROSSINGS_PER_CORNER: usize = 4;
+const MOST_CROSSINGS: usize = 1 << 17;
 
 /// Outlines of more corners are not looked at: what crosses itself so often does so everywhere, and memory matters.
 pub(super) const MOST_CORNERS: usize = 1 << 20;
@@ -164,6 +166,8 @@ impl Resolver {
         crossings.clear();
         first.clear();
         let mut looks = LOOKS + LOOKS_PER_CORNER * corners.len();
+        // Each is kept for either edge.
+        let most = 2 * MOST_CROSSINGS.min(CROSSINGS + CROSSINGS_PER_CORNER * corners.len());
         let all = boxes.for_pairs(
             simd,
             &mut looks,
@@ -171,7 +175,7 @@ impl Resolver {
             |edge, other| {
                 let ends = [ends_of(corners, edge), ends_of(corners, other)];
                 if let [Some(ends), Some(others)] = ends
-                    && crossings.len() < MOST_CROSSINGS
+                    && crossings.len() < most
                     && let Some((place, both)) = cross(ends, others)
                 {
                     if first.is_empty() {
@@ -187,7 +191,7 @@ impl Resolver {
                 }
             },
         );
-        all && crossings.len() < MOST_CROSSINGS
+        all && crossings.len() < most
     }
 
     /// Counts how often outlines wind beside the leftmost corner of each; `None` where that takes too long.
@@ -419,36 +423,28 @@ fn list_along(corners: &[FixedPoint], crossings: &[Crossing], edge: Numbers, hea
     /// More than the error of two quotients up to 1.
     const SURE: f64 = 1e-14;
     const FEW: usize = 4;
-    let is_after = |a: &Crossing, b: &Crossing| {
+    let order = |a: &Crossing, b: &Crossing| {
         let distance = a.part - b.part;
-        if distance.abs() > SURE { distance > 0.0 } else { compare(corners, edge, a.other, b.other).is_gt() }
+        if distance.abs() > SURE { distance.total_cmp(&0.0) } else { compare(corners, edge, a.other, b.other) }
     };
     along.clear();
     let mut number = head;
     while let Some(crossing) = crossings.get(number as usize) {
-        let mut place = along.len();
         along.push(*crossing);
-        // Mostly there are two or three.
-        while place <= FEW
-            && place > 0
-            && let Some([before, own]) = along.get_mut(place - 1..).and_then(|rest| rest.first_chunk_mut())
-            && is_after(before, own)
+        number = crossing.next;
+    }
+    if along.len() > FEW {
+        along.sort_unstable_by(order);
+        return;
+    }
+    for end in 1..along.len() {
+        let mut place = end;
+        while let Some([before, own]) = along.get_mut(place.wrapping_sub(1)..).and_then(|rest| rest.first_chunk_mut())
+            && order(before, own).is_gt()
         {
             core::mem::swap(before, own);
             place -= 1;
         }
-        number = crossing.next;
-    }
-    if along.len() > FEW {
-        along.sort_unstable_by(|a, b| {
-            if is_after(a, b) {
-                Ordering::Greater
-            } else if is_after(b, a) {
-                Ordering::Less
-            } else {
-                Ordering::Equal
-            }
-        });
     }
 }
 

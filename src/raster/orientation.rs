@@ -22,12 +22,6 @@ impl Corner {
     pub(super) fn is_above(self, other: Self) -> bool {
         self.point.y < other.point.y || self.point.y == other.point.y && self.number > other.number
     }
-
-    /// Whether it lies left of another corner.
-    #[inline(always)]
-    pub(super) fn is_left_of(self, other: Self) -> bool {
-        self.point.x < other.point.x || self.point.x == other.point.x && self.number > other.number
-    }
 }
 
 /// Twice the area of the triangle `a`, `b`, `c`, whose corners are at most 2^29 apart: above 0 where `c` lies right of the way from `a` to `b` on the canvas.
@@ -94,7 +88,6 @@ mod tests {
                         assert_eq!(is_right_of([b, a], c, -area), !found);
                         assert_eq!(is_right_of([b, c], a, area), found);
                         assert_eq!(a.is_above(b), ay < by);
-                        assert_eq!(a.is_left_of(b), ax < bx);
                     }
                 }
             }

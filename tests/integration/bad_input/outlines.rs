@@ -118,13 +118,15 @@ fn tens_of_thousands_of_windings() {
 
 #[test]
 fn crowds_of_edges_look_the_same_at_every_setting() {
-    // Wound around 17,000 times in some strips, once in others.
-    let mut path = Path::new();
-    path.circle((30.0, 40.0), 25.0);
-    for _ in 0..17_000 {
-        path.rect(Rect::from_ltrb(8.3, 8.6, 40.1, 21.2));
-    }
-    for antialias in [Antialias::Analytic, Antialias::Exact] {
+    // Wound around thousands of times in some strips, once in others: too often to find out where so many edges cross.
+    for (antialias, windings, is_resolved) in
+        [(Antialias::Analytic, 17_000, false), (Antialias::Exact, 17_000, false), (Antialias::Exact, 50, true)]
+    {
+        let mut path = Path::new();
+        path.circle((30.0, 40.0), 25.0);
+        for _ in 0..windings {
+            path.rect(Rect::from_ltrb(8.3, 8.6, 40.1, 21.2));
+        }
         let draw = |settings: RenderSettings| {
             let mut canvas = Canvas::with_settings(64, 80, settings).unwrap();
             canvas.fill_path(&path, FillRule::NonZero, Paint::new(Color::BLACK).with_antialias(antialias));
@@ -141,7 +143,7 @@ fn crowds_of_edges_look_the_same_at_every_setting() {
         let alpha = |x, y| f32::from(plain.pixel(x, y).unwrap()[3]);
         for (x, y, coverage) in [(8, 12, 0.7), (40, 12, 0.1), (20, 8, 0.4), (20, 12, 1.0), (20, 50, 1.0), (8, 8, 0.28)]
         {
-            let coverage = if antialias == Antialias::Analytic { 1.0 } else { coverage };
+            let coverage = if is_resolved { coverage } else { 1.0 };
             assert!((alpha(x, y) - coverage * 255.0).abs() < 2.0, "{antialias:?}: {} at {x}, {y}", alpha(x, y));
         }
         // In the circle alone both are the same.
