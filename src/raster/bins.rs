@@ -276,26 +276,20 @@ impl EdgeBins {
         for band in bands.iter_mut() {
             band.items.push(BandItem::open(command, role, band.edges.len()));
         }
-        let mut list = |points: &[FixedPoint], start: usize| {
-            if let [band] = &mut *bands {
-                band.edges.extend(start as u32..(points.len() as u32).saturating_sub(1));
-            } else {
-                list_by_band(bands, points, start, first_band << *band_shift, *band_shift);
-            }
-        };
+        let first_top = first_band << *band_shift;
         match outlines {
             Outlines::Polygons(polygons) => {
                 for polygon in polygons.iter() {
                     let start = points.len();
                     append_closed(simd, polygon, points);
-                    list(points, start);
+                    list_from(bands, points, start, first_top, *band_shift);
                 }
             }
             Outlines::Resolved => {
                 for piece in resolver.pieces() {
                     let start = points.len();
                     points.extend_from_slice(piece);
-                    list(points, start);
+                    list_from(bands, points, start, first_top, *band_shift);
                 }
             }
         }
@@ -396,6 +390,16 @@ fn close_item(band: &mut BandList) -> bool {
 
 /// Lists the edges between the points from `start` on for each of `bands` that they touch; the first band's top is
 /// at `first_top`.
+#[inline(always)]
+fn list_from(bands: &mut [BandList], points: &[FixedPoint], start: usize, first_top: i32, band_shift: u32) {
+    if let [band] = bands {
+        band.edges.extend(start as u32..(points.len() as u32).saturating_sub(1));
+    } else {
+        list_by_band(bands, points, start, first_top, band_shift);
+    }
+}
+
+/// As [`list_from`] for several bands.
 #[inline(always)]
 fn list_by_band(bands: &mut [BandList], points: &[FixedPoint], start: usize, first_top: i32, band_shift: u32) {
     let band_of = |y: i32| ((y - first_top) >> band_shift) as usize;

@@ -46,7 +46,7 @@ const LEFT: u8 = 2;
 const DOWN: u8 = 4;
 const UP: u8 = 8;
 
-/// Two nodes of a level, or one twice, whose edges are still to be compared.
+/// Two nodes of a level above the lowest, or one twice, that are still to be compared.
 #[derive(Clone, Copy, Debug)]
 struct Pair {
     level: u32,
@@ -136,13 +136,13 @@ impl Boxes {
         })
     }
 
-    /// Builds the levels above the edges.
+    /// Builds the levels above the edges, one at least.
     #[inline(always)]
     pub(super) fn build(&mut self) {
         self.height = 1;
         while let Some((below, above)) = self.levels.split_at_mut_checked(self.height)
             && let Some(below) = below.last()
-            && below.len() > 1
+            && (below.len() > 1 || self.height == 1)
         {
             if above.is_empty() {
                 self.levels.push(Vec::new());
@@ -157,11 +157,6 @@ impl Boxes {
         }
     }
 
-    #[inline(always)]
-    fn node(&self, level: u32, index: u32) -> Option<&Node> {
-        self.levels.get(level as usize)?.get(index as usize)
-    }
-
     /// Calls `meet` with any two edges whose boxes meet, and that do not follow each other. False where `looks` do not suffice.
     #[inline(always)]
     pub(super) fn for_pairs<S: Simd>(
@@ -170,51 +165,41 @@ impl Boxes {
         looks: &mut usize,
         mut meet: impl FnMut(Numbers, Numbers),
     ) -> bool {
-        let Some(top) = self.height.checked_sub(1) else { return true };
-        if self.node(top as u32, 0).is_none_or(|node| node.is_ordered) {
-            return true;
-        }
-        let mut pairs = core::mem::take(&mut self.pairs);
+        let Self { levels, height, pairs } = self;
+        let Some(top) = height.checked_sub(1) else { return true };
         pairs.clear();
         pairs.push(Pair { level: top as u32, one: 0, other: 0 });
         while let Some(Pair { level, one, other }) = pairs.pop() {
-            let (Some(own), Some(others)) = (self.node(level, one), self.node(level, other)) else { break };
-            let mut lanes = own.near(simd, others.around);
-            let Some(rest) = looks.checked_sub(1 + lanes.count_ones() as usize) else {
-                self.pairs = pairs;
-                return false;
+            let Some(lower) = level.checked_sub(1) else { break };
+            let [below, level_nodes] =
+                [lower, level].map(|level| levels.get(level as usize).map_or(&[][..], Vec::as_slice));
+            let (Some(own), Some(others)) = (level_nodes.get(one as usize), level_nodes.get(other as usize)) else {
+                break;
             };
-            *looks = rest;
+            let mut lanes = own.near(simd, others.around);
+            let mut used = 1 + lanes.count_ones() as usize;
             while lanes != 0 {
                 let lane = lanes.trailing_zeros();
                 lanes &= lanes - 1;
                 let mut near = others.near(simd, own.bounds(lane));
-                if level > 0 {
-                    if one == other {
-                        near &= !(u32::from(own.ordered) & 1 << lane) & !0 << lane;
-                    }
-                    while near != 0 {
-                        let index = near.trailing_zeros();
-                        near &= near - 1;
-                        pairs.push(Pair { level: level - 1, one: own.first + lane, other: others.first + index });
-                    }
-                    continue;
-                }
                 if one == other {
-                    near &= !3 << lane;
-                } else if lane == 7 && others.first == own.first + 8 && own.outline == others.outline {
-                    near &= !1;
+                    near &= !(u32::from(own.ordered) & 1 << lane) & !0 << lane;
                 }
                 while near != 0 {
-                    let (edge, other) = (own.first + lane, others.first + near.trailing_zeros());
+                    let (one, other) = (own.first + lane, others.first + near.trailing_zeros());
                     near &= near - 1;
-                    if own.outline != [edge, other] {
-                        meet(own.numbers(edge), others.numbers(other));
+                    if level > 1 {
+                        pairs.push(Pair { level: lower, one, other });
+                    } else if let (Some(own), Some(others)) = (below.get(one as usize), below.get(other as usize)) {
+                        used += own.for_pairs(simd, others, &mut meet);
                     }
                 }
             }
+            match looks.checked_sub(used) {
+                Some(rest) => *looks = rest,
+                None => return false,
+            }
         }
-        self.pairs = pairs;
         true
     }
 
@@ -227,19 +212,18 @@ impl Boxes {
         looks: &mut usize,
         mut found: impl FnMut(Numbers),
     ) -> bool {
-        let Some(top) = self.height.checked_sub(1) else { return true };
+        let Self { levels, height, pairs } = self;
+        let Some(top) = height.checked_sub(1) else { return true };
         let beside = Bounds { left: i32::MIN, top: point.y, right: point.x, bottom: point.y };
-        let mut pairs = core::mem::take(&mut self.pairs);
         pairs.clear();
         pairs.push(Pair { level: top as u32, one: 0, other: 0 });
         while let Some(Pair { level, one, .. }) = pairs.pop() {
-            let Some(node) = self.node(level, one) else { break };
+            let Some(node) = levels.get(level as usize).and_then(|nodes| nodes.get(one as usize)) else { break };
             let mut near = node.near(simd, beside);
-            let Some(rest) = looks.checked_sub(1) else {
-                self.pairs = pairs;
-                return false;
-            };
-            *looks = rest;
+            match looks.checked_sub(1) {
+                Some(rest) => *looks = rest,
+                None => return false,
+            }
             while near != 0 {
                 let index = node.first + near.trailing_zeros();
                 near &= near - 1;
@@ -250,7 +234,6 @@ impl Boxes {
                 }
             }
         }
-        self.pairs = pairs;
         true
     }
 }
@@ -331,6 +314,38 @@ impl Node {
         node
     }
 
+    /// Calls `meet` with the edges of this node and others of another, or the same, whose boxes meet, and that do not follow each other. Says how
+    /// many it looked at.
+    #[inline(always)]
+    fn for_pairs<S: Simd>(&self, simd: S, others: &Self, meet: &mut impl FnMut(Numbers, Numbers)) -> usize {
+        let is_same = self.first == others.first;
+        let follows = others.first == self.first + 8 && self.outline == others.outline;
+        let mut lanes = self.near(simd, others.around);
+        if is_same {
+            // Of the last two there is none to compare with.
+            lanes &= 0x3f;
+        }
+        let looks = 1 + lanes.count_ones() as usize;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros();
+            lanes &= lanes - 1;
+            let mut near = others.near(simd, self.bounds(lane));
+            if is_same {
+                near &= !3 << lane;
+            } else if follows && lane == 7 {
+                near &= !1;
+            }
+            while near != 0 {
+                let (edge, other) = (self.first + lane, others.first + near.trailing_zeros());
+                near &= near - 1;
+                if self.outline != [edge, other] {
+                    meet(self.numbers(edge), others.numbers(other));
+                }
+            }
+        }
+        looks
+    }
+
     /// The corners of an edge.
     #[inline(always)]
     fn numbers(&self, edge: u32) -> Numbers {
@@ -341,7 +356,7 @@ impl Node {
     /// The box in lane `lane`.
     #[inline(always)]
     fn bounds(&self, lane: u32) -> Bounds {
-        let at = |lanes: &[i32; 8]| lanes.get(lane as usize).copied().unwrap_or(0);
+        let at = |lanes: &[i32; 8]| lanes.get(lane as usize & 7).copied().unwrap_or(0);
         Bounds { left: at(&self.left), top: at(&self.top), right: at(&self.right), bottom: at(&self.bottom) }
     }
 
