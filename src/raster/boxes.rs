@@ -157,13 +157,13 @@ impl Boxes {
         }
     }
 
-    /// Calls `meet` with any two edges whose boxes meet, and that do not follow each other. False where `looks` do not suffice.
+    /// Calls `meet` with any two edges whose boxes meet, and that do not follow each other, until it returns false. False then, and where `looks` do not suffice.
     #[inline(always)]
     pub(super) fn for_pairs<S: Simd>(
         &mut self,
         simd: S,
         looks: &mut usize,
-        mut meet: impl FnMut(Numbers, Numbers),
+        mut meet: impl FnMut(Numbers, Numbers) -> bool,
     ) -> bool {
         let Self { levels, height, pairs } = self;
         let Some(top) = height.checked_sub(1) else { return true };
@@ -191,7 +191,10 @@ impl Boxes {
                     if level > 1 {
                         pairs.push(Pair { level: lower, one, other });
                     } else if let (Some(own), Some(others)) = (below.get(one as usize), below.get(other as usize)) {
-                        used += own.for_pairs(simd, others, &mut meet);
+                        match own.for_pairs(simd, others, &mut meet) {
+                            Some(more) => used += more,
+                            None => return false,
+                        }
                     }
                 }
             }
@@ -315,9 +318,14 @@ impl Node {
     }
 
     /// Calls `meet` with the edges of this node and others of another, or the same, whose boxes meet, and that do not follow each other. Says how
-    /// many it looked at.
+    /// many it looked at; `None` where `meet` returned false.
     #[inline(always)]
-    fn for_pairs<S: Simd>(&self, simd: S, others: &Self, meet: &mut impl FnMut(Numbers, Numbers)) -> usize {
+    fn for_pairs<S: Simd>(
+        &self,
+        simd: S,
+        others: &Self,
+        meet: &mut impl FnMut(Numbers, Numbers) -> bool,
+    ) -> Option<usize> {
         let is_same = self.first == others.first;
         let follows = others.first == self.first + 8 && self.outline == others.outline;
         let mut lanes = self.near(simd, others.around);
@@ -338,12 +346,12 @@ impl Node {
             while near != 0 {
                 let (edge, other) = (self.first + lane, others.first + near.trailing_zeros());
                 near &= near - 1;
-                if self.outline != [edge, other] {
-                    meet(self.numbers(edge), others.numbers(other));
+                if self.outline != [edge, other] && !meet(self.numbers(edge), others.numbers(other)) {
+                    return None;
                 }
             }
         }
-        looks
+        Some(looks)
     }
 
     /// The corners of an edge.
@@ -464,7 +472,10 @@ mod tests {
                 let (corners, outlines, mut boxes) = outlines(&mut random, level);
                 let mut found = Vec::new();
                 let mut looks = usize::MAX;
-                assert!(dispatch!(level, simd => boxes.for_pairs(simd, &mut looks, |a, b| found.push([a, b]))));
+                assert!(dispatch!(level, simd => boxes.for_pairs(simd, &mut looks, |a, b| {
+                    found.push([a, b]);
+                    true
+                })));
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "round {round}: twice");
                 let edges = outlines.concat();
@@ -482,9 +493,13 @@ mod tests {
                 // With fewer looks it gives up.
                 let used = usize::MAX - looks;
                 let mut few = used - 1;
-                assert!(!dispatch!(level, simd => boxes.for_pairs(simd, &mut few, |_, _| {})));
+                assert!(!dispatch!(level, simd => boxes.for_pairs(simd, &mut few, |_, _| true)));
+                if !found.is_empty() {
+                    let mut looks = usize::MAX;
+                    assert!(!dispatch!(level, simd => boxes.for_pairs(simd, &mut looks, |_, _| false)));
+                }
                 let mut enough = used;
-                assert!(dispatch!(level, simd => boxes.for_pairs(simd, &mut enough, |_, _| {})));
+                assert!(dispatch!(level, simd => boxes.for_pairs(simd, &mut enough, |_, _| true)));
             }
             assert!(touching > 5000, "{touching}");
         }

@@ -168,14 +168,13 @@ impl Resolver {
         let mut looks = LOOKS + LOOKS_PER_CORNER * corners.len();
         // Each is kept for either edge.
         let most = 2 * MOST_CROSSINGS.min(CROSSINGS + CROSSINGS_PER_CORNER * corners.len());
-        let all = boxes.for_pairs(
+        boxes.for_pairs(
             simd,
             &mut looks,
             #[inline(always)]
             |edge, other| {
                 let ends = [ends_of(corners, edge), ends_of(corners, other)];
                 if let [Some(ends), Some(others)] = ends
-                    && crossings.len() < most
                     && let Some((place, both)) = cross(ends, others)
                 {
                     if first.is_empty() {
@@ -189,9 +188,9 @@ impl Resolver {
                         }
                     }
                 }
+                crossings.len() < most
             },
-        );
-        all && crossings.len() < most
+        )
     }
 
     /// Counts how often outlines wind beside the leftmost corner of each; `None` where that takes too long.
@@ -315,19 +314,16 @@ fn ends_of(corners: &[FixedPoint], [from, to]: Numbers) -> Option<Ends> {
 /// Leaves out corners from `first` on that are where the one before is.
 #[inline(always)]
 fn leave_out_repeated(corners: &mut Vec<FixedPoint>, first: usize) {
-    let Some(listed) = corners.get_mut(first..) else { return };
-    if listed.windows(2).any(|pair| matches!(pair, [a, b] if a == b)) {
-        let mut kept = 0;
-        for index in 0..listed.len() {
-            let Some(corner) = listed.get(index).copied() else { break };
-            let is_repeated = kept > 0 && listed.get(kept - 1) == Some(&corner);
-            if !is_repeated && let Some(place) = listed.get_mut(kept) {
-                *place = corner;
-                kept += 1;
-            }
+    let mut kept = first;
+    for index in first..corners.len() {
+        let Some(corner) = corners.get(index).copied() else { break };
+        let is_repeated = kept > first && corners.get(kept - 1) == Some(&corner);
+        if !is_repeated && let Some(place) = corners.get_mut(kept) {
+            *place = corner;
+            kept += 1;
         }
-        corners.truncate(first + kept);
     }
+    corners.truncate(kept);
 }
 
 /// Where two edges cross; for each of them, which part of it lies before, and by how much the windings beside it change there.
