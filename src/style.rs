@@ -20,8 +20,7 @@ pub enum Antialias {
     Analytic,
     /// As [`Antialias::Analytic`], with outlines cut where they cross and freed of what lies inside, by the fill rule: within
     /// 4/255 of the true area also where they cross. Takes 1 to 2 times as long, strokes of long noisy lines four times. A shape that crosses itself so often
-    /// that it would take far longer (of 8,000 random corners, say, or of more than a million), or that reaches a million pixels far, is drawn as by `Analytic`,
-    /// after it was looked at for up to four times as long as that takes.
+    /// that it would take far longer (of 8,000 random corners, say, or of more than a million), or that reaches a million pixels far, is drawn as by `Analytic`.
     Exact,
     /// n × n samples a pixel on a regular grid, n in 1 ..= 16 (others are clamped). 4 is
     /// tiny-skia's own sampling.

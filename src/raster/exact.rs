@@ -27,7 +27,7 @@ const LOOKS: usize = 1 << 19;
 const LOOKS_PER_CORNER: usize = 16;
 
 /// Where edges cross more often, outlines stay as they are: at such density, what is inside of them no longer shows.
-const CROSSINGS: usize = 1 << 13;
+const CROSSINGS: usize = 1 << 16;
 const CROSSINGS_PER_CORNER: usize = 4;
 const MOST_CROSSINGS: usize = 1 << 17;
 
