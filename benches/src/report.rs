@@ -35,7 +35,7 @@ pub struct Report {
     pub machine: Vec<(&'static str, String)>,
     pub rounds: usize,
     pub workloads: Vec<Workload>,
-    pub accuracy: Vec<(Kind, Accuracy)>,
+    pub accuracy: Vec<Accuracy>,
     pub scaling: Vec<Series>,
 }
 
@@ -111,11 +111,10 @@ impl Report {
                     writeln!(out, "drawings, rastrum on {threads}: geometric mean {mean:.2} x vello_cpu (goal {goal})");
             }
         }
-        if !self.accuracy.is_empty() {
-            let _ =
-                writeln!(out, "\ncoverage against 64 x 64 samples a pixel, edge pixels of random polygons, in 1/255");
-            for (kind, accuracy) in &self.accuracy {
-                let (name, mean, above, max) = (kind.name(), accuracy.mean(), accuracy.above16(), accuracy.max);
+        for Accuracy { title, engines, .. } in &self.accuracy {
+            let _ = writeln!(out, "\ncoverage against 64 x 64 samples a pixel, edge pixels of {title}, in 1/255");
+            for (kind, errors) in engines {
+                let (name, mean, above, max) = (kind.name(), errors.mean(), errors.above16(), errors.max);
                 let _ = writeln!(out, "  {name:14} mean {mean:.3}, above 16 {above:.3} %, max {max:.0}");
             }
         }
@@ -214,18 +213,17 @@ impl Report {
                 exact.push((workload.name.as_str(), number(Some(price))));
             }
         }
-        let accuracy: Vec<(&str, String)> = self
-            .accuracy
-            .iter()
-            .map(|(kind, accuracy)| {
+        let accuracy = self.accuracy.iter().map(|Accuracy { key, engines, .. }| {
+            let engines = engines.iter().map(|(kind, errors)| {
                 let fields = [
-                    ("mean", number(Some(accuracy.mean()))),
-                    ("above16_percent", number(Some(accuracy.above16()))),
-                    ("max", number(Some(accuracy.max))),
+                    ("mean", number(Some(errors.mean()))),
+                    ("above16_percent", number(Some(errors.above16()))),
+                    ("max", number(Some(errors.max))),
                 ];
                 (kind.name(), object(&fields))
-            })
-            .collect();
+            });
+            (*key, object(&engines.collect::<Vec<_>>()))
+        });
         let machine: Vec<(&str, String)> = self
             .machine
             .iter()
@@ -248,16 +246,19 @@ impl Report {
                 ])
             })
         });
-        object(&[
+        let mut fields = vec![
             ("results", array(&results)),
             ("refused", array(&refused)),
             ("machine", object(&machine)),
             ("rounds", self.rounds.to_string()),
-            ("accuracy", object(&accuracy)),
+        ];
+        fields.extend(accuracy);
+        fields.extend([
             ("exact_to_analytic", object(&exact)),
             ("drawings", object(&drawings)),
             ("scaling", array(&scaling.collect::<Vec<String>>())),
-        ])
+        ]);
+        object(&fields)
     }
 }
 

@@ -235,7 +235,7 @@ fn glyphs() -> Scene {
 
 /// A closed contour of `curves` quadratic curves (run backwards if negative) around a centre, its points between
 /// 0.7 and 1 of the radii away: bumps and hollows like those of letters.
-fn blob(random: &mut Random, path: &mut Vec<Segment>, curves: i32, center: Point, radii: [f32; 2]) {
+pub fn blob(random: &mut Random, path: &mut Vec<Segment>, curves: i32, center: Point, radii: [f32; 2]) {
     let count = curves.unsigned_abs();
     let mut at = |step: u32| {
         let angle = step as f32 / (2 * count) as f32 * TAU * curves.signum() as f32;

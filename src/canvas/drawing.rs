@@ -153,6 +153,7 @@ impl Canvas<'_> {
     }
 
     /// Records what `geometry` records, with its shadow before it.
+    #[inline(always)]
     pub(super) fn draw(&mut self, paint: &Paint, geometry: impl FnMut(&mut Self) -> Option<(Geometry, IntRect)>) {
         let mut geometry = geometry;
         if self.state.bounds.is_empty() || paint.blend_mode == BlendMode::Destination {
@@ -168,6 +169,10 @@ impl Canvas<'_> {
     }
 
     /// Records a draw under the current state.
+    ///
+    /// A part of each call that gets here: a geometry that is handed on in memory, written field by field and read as a
+    /// whole, has to wait for itself.
+    #[inline(always)]
     fn record(&mut self, paint: &Paint, geometry: Geometry, bounds: IntRect) {
         let bounds = bounds.intersect(self.state.bounds);
         if bounds.is_empty() {
@@ -273,6 +278,7 @@ impl Canvas<'_> {
 
     /// Stores a path's outline, with the device pixels that filling it can touch. A singular transform leaves no area,
     /// and nothing is filled: not even the slivers that rounding would make of it.
+    #[inline(always)]
     pub(super) fn record_fill(&mut self, path: &Path, rule: FillRule) -> Option<(Geometry, IntRect)> {
         let transform = self.state.to_pixels();
         if transform.is_singular() {
@@ -290,6 +296,7 @@ impl Canvas<'_> {
     }
 
     /// As [`record_fill`](Self::record_fill) of a rectangle.
+    #[inline(always)]
     fn record_rect(&mut self, rect: Rect) -> Option<(Geometry, IntRect)> {
         if !rect.is_finite() {
             return None;
@@ -305,6 +312,7 @@ impl Canvas<'_> {
     }
 
     /// A rectangle of user space that is one in device space, too: it needs no outline.
+    #[inline(always)]
     fn record_device_rect(&self, rect: Rect) -> Option<(Geometry, IntRect)> {
         let transform = self.state.to_pixels();
         let corner = transform.map(Point::new(rect.left, rect.top));

@@ -250,7 +250,10 @@ impl<'a> Canvas<'a> {
 
     /// Replaces the transform from user space to device pixels.
     pub fn set_transform(&mut self, transform: Transform) {
-        self.state.transform = transform;
+        // Mostly it is the one that is set. What was just written in parts is slow to be read in others.
+        if self.state.transform != transform {
+            self.state.transform = transform;
+        }
     }
 
     /// The transform from user space to device pixels.

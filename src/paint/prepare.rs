@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::gradient::{Gradient, Placed, place_linear, place_radial, place_sweep};
 use super::pattern::ImagePattern;
 use super::plane::Affine;
-use super::ramp::{Colors, clean_stops};
+use super::ramp::{Colors, last_color};
 use super::shader::{FilterQuality, GradientStop, Pattern, Shader, SpreadMode};
-use crate::color::{Color, unit};
+use crate::color::unit;
 use crate::geom::Transform;
 use crate::surface::Pixmap;
 
@@ -65,10 +65,7 @@ impl PreparedPaint {
     fn from_gradient(placed: Placed, stops: &[GradientStop], spread: SpreadMode, opacity: f32) -> Self {
         match placed {
             Placed::Nothing => Self::Nothing,
-            Placed::LastColor => {
-                let last = clean_stops(stops, opacity).last().map(|stop| stop.color);
-                last.map_or(Self::Nothing, |color: Color| Self::Solid(color.premultiply()))
-            }
+            Placed::LastColor => last_color(stops, opacity).map_or(Self::Nothing, Self::Solid),
             Placed::At(placement) => match Colors::new(stops, spread, opacity, placement.geometry.has_holes()) {
                 Colors::None => Self::Nothing,
                 Colors::Constant(pixel) => Self::Solid(pixel),

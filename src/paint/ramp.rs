@@ -21,9 +21,8 @@ pub(super) struct Ramp {
     high: f32,
     /// Whether every stop is opaque: then colours need no multiplication.
     opaque: bool,
+    /// In order; where the last ends is of no consequence.
     pieces: Vec<Piece>,
-    /// Where each piece but the last ends.
-    ends: Vec<f32>,
 }
 
 /// How positions outside 0 ..= 1 are folded into it. Pad needs nothing but the clamp, and decal is a pad
@@ -41,6 +40,7 @@ enum Repetition {
 /// straight, in 0 ..= 1, and alpha is in 0 ..= 255.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Piece {
+    end: f32,
     origin: f32,
     color: [f32; 4],
     slope: [f32; 4],
@@ -58,25 +58,40 @@ pub(super) enum Colors {
 }
 
 /// The stops' positions, clamped and in order, with their colours times `opacity`.
-pub(super) fn clean_stops(stops: &[GradientStop], opacity: f32) -> Vec<GradientStop> {
+fn clean_stops(stops: &[GradientStop], opacity: f32) -> impl Iterator<Item = GradientStop> {
     let mut last = 0.0_f32;
-    let mut clean = Vec::with_capacity(stops.len());
-    for stop in stops {
+    stops.iter().map(move |stop| {
         // Positions that are all but 0 are 0: a slope between two of them would overflow.
         let position = if stop.position > 1e-20 { unit(stop.position) } else { 0.0 };
         last = if position > last { position } else { last };
         let Color { r, g, b, .. } = stop.color;
         let color = Color::from_rgba(unit(r), unit(g), unit(b), stop.color.with_opacity(opacity).a);
-        clean.push(GradientStop::new(last, color));
-    }
-    clean
+        GradientStop::new(last, color)
+    })
+}
+
+/// The colour that a gradient of no length has: that of its last stop.
+pub(super) fn last_color(stops: &[GradientStop], opacity: f32) -> Option<[u8; 4]> {
+    clean_stops(stops, opacity).last().map(|stop| stop.color.premultiply())
 }
 
 impl Colors {
     /// The colours of `stops`, times `opacity`. One stop paints everywhere (SVG 2, 14.2.4); several of the
     /// same colour leave a geometry's holes open.
     pub(super) fn new(stops: &[GradientStop], spread: SpreadMode, opacity: f32, holes: bool) -> Self {
-        let stops = clean_stops(stops, opacity);
+        // Most gradients have few: these need no memory of their own.
+        let mut few = [GradientStop::new(0.0, Color::TRANSPARENT); 8];
+        let mut many = Vec::new();
+        let stops = match few.get_mut(..stops.len()) {
+            Some(few) => {
+                few.iter_mut().zip(clean_stops(stops, opacity)).for_each(|(few, stop)| *few = stop);
+                &*few
+            }
+            None => {
+                many.extend(clean_stops(stops, opacity));
+                &*many
+            }
+        };
         let (Some(first), Some(last)) = (stops.first(), stops.last()) else { return Self::None };
         let same = stops.iter().all(|stop| stop.color == first.color);
         let invisible = stops.iter().all(|stop| stop.color.a == 0.0);
@@ -84,7 +99,7 @@ impl Colors {
         if invisible || stops.len() == 1 || (same && !bounded) {
             return Self::Constant(first.color.premultiply());
         }
-        Self::Ramp(Ramp::new(&stops, *first, *last, spread))
+        Self::Ramp(Ramp::new(stops, *first, *last, spread))
     }
 }
 
@@ -92,41 +107,38 @@ impl Ramp {
     fn new(stops: &[GradientStop], first: GradientStop, last: GradientStop, spread: SpreadMode) -> Self {
         let opaque = spread != SpreadMode::Decal && stops.iter().all(|stop| stop.color.a == 1.0);
         let decal = spread == SpreadMode::Decal;
-        let constant = |color: Color| Piece { origin: 0.0, color: scaled(color, opaque), slope: [0.0; 4] };
-        // (end, piece) in order; the last end is never looked at.
-        let mut list: Vec<(f32, Piece)> = Vec::with_capacity(stops.len() + 3);
+        let mut pieces = Vec::with_capacity(stops.len() + if decal { 3 } else { 1 });
+        let mut start = f32::NEG_INFINITY;
+        // Intervals of no length go.
+        let mut add = |piece: Piece| {
+            if piece.end > start {
+                start = piece.end;
+                pieces.push(piece);
+            }
+        };
+        let constant =
+            |end: f32, color: Color| Piece { end, origin: 0.0, color: scaled(color, opaque), slope: [0.0; 4] };
         if decal {
-            list.push((0.0, constant(Color::TRANSPARENT)));
+            add(constant(0.0, Color::TRANSPARENT));
         }
-        list.push((first.position, constant(first.color)));
+        add(constant(first.position, first.color));
         for (from, to) in stops.iter().zip(stops.iter().skip(1)) {
             let (from_color, to_color) = (scaled(from.color, opaque), scaled(to.color, opaque));
             let length = f64::from(to.position) - f64::from(from.position);
             let slope = |k: usize| ((f64::from(to_color[k]) - f64::from(from_color[k])) / length) as f32;
             let slope = [slope(0), slope(1), slope(2), slope(3)];
-            list.push((to.position, Piece { origin: from.position, color: from_color, slope }));
+            add(Piece { end: to.position, origin: from.position, color: from_color, slope });
         }
         if decal {
-            list.push((1.0_f32.next_up(), constant(last.color)));
+            add(constant(1.0_f32.next_up(), last.color));
         }
-        list.push((f32::INFINITY, constant(if decal { Color::TRANSPARENT } else { last.color })));
+        add(constant(f32::INFINITY, if decal { Color::TRANSPARENT } else { last.color }));
 
-        // Intervals of no length go; so do flat ends that the clamp stands for, where no step precedes them.
-        let mut start = f32::NEG_INFINITY;
-        let mut pieces = Vec::with_capacity(list.len());
-        let mut ends = Vec::with_capacity(list.len());
-        for (end, piece) in list {
-            if end > start {
-                pieces.push(piece);
-                ends.push(end);
-                start = end;
-            }
-        }
+        // So do flat ends that the clamp stands for, where no step precedes them.
         let (mut low, mut high) = (-1.0, 2.0);
         if !decal && pieces.len() > 2 {
             if pieces.get(1).is_some_and(|piece| piece.color == scaled(first.color, opaque)) {
-                pieces.remove(0);
-                low = ends.remove(0);
+                low = pieces.remove(0).end;
             }
             let final_stop = stops.iter().rev().find(|stop| stop.position < last.position);
             // The last sloping piece ends in the colour of the first stop at the last position.
@@ -136,13 +148,12 @@ impl Ramp {
                 high = last.position;
             }
         }
-        ends.truncate(pieces.len().saturating_sub(1));
         let repetition = match spread {
             SpreadMode::Repeat => Repetition::Repeat,
             SpreadMode::Reflect => Repetition::Reflect,
             SpreadMode::Pad | SpreadMode::Decal => Repetition::None,
         };
-        Self { repetition, low, high, opaque, pieces, ends }
+        Self { repetition, low, high, opaque, pieces }
     }
 
     /// Whether every pixel it gives is opaque.
@@ -167,13 +178,12 @@ impl Ramp {
 
     #[inline(always)]
     fn shade_with<S: Simd, const OPAQUE: bool>(&self, simd: S, positions: &[[f32; 8]], out: &mut [PixelGroup]) {
-        match (self.pieces.as_slice(), self.ends.as_slice()) {
-            ([first], _) => self.shade_few::<S, OPAQUE, 0>(simd, first, [], positions, out),
-            ([first, second], [end]) => {
-                self.shade_few::<S, OPAQUE, 1>(simd, first, [(*end, second)], positions, out);
-            }
-            ([first, second, third], [end, later]) => {
-                self.shade_few::<S, OPAQUE, 2>(simd, first, [(*end, second), (*later, third)], positions, out);
+        match self.pieces.as_slice() {
+            [first] => self.shade_few::<S, OPAQUE, 0>(simd, first, [], positions, out),
+            [first, second] => self.shade_few::<S, OPAQUE, 1>(simd, first, [(first.end, second)], positions, out),
+            [first, second, third] => {
+                let others = [(first.end, second), (second.end, third)];
+                self.shade_few::<S, OPAQUE, 2>(simd, first, others, positions, out);
             }
             _ => self.shade_many::<S, OPAQUE>(simd, positions, out),
         }
@@ -221,8 +231,9 @@ impl Ramp {
                 let lane = open.trailing_zeros() as usize & 7;
                 if !(lanes[lane] >= start && lanes[lane] < end) {
                     let index = self.find(lanes[lane]);
-                    start = index.checked_sub(1).and_then(|k| self.ends.get(k)).copied().unwrap_or(self.low);
-                    end = self.ends.get(index).copied().unwrap_or(f32::INFINITY);
+                    let before = index.checked_sub(1).and_then(|k| self.pieces.get(k));
+                    start = before.map_or(self.low, |piece| piece.end);
+                    end = self.ends().get(index).map_or(f32::INFINITY, |piece| piece.end);
                     piece = PieceLanes::splat(simd, &self.piece(index));
                 }
                 let inside = t.simd_ge(start) & t.simd_lt(end);
@@ -235,19 +246,26 @@ impl Ramp {
         }
     }
 
+    /// The pieces whose end counts: all but the last.
+    #[inline(always)]
+    fn ends(&self) -> &[Piece] {
+        self.pieces.split_last().map_or(&[], |(_, others)| others)
+    }
+
     /// The index of the piece that holds position `t`: the number of ends at or before it.
     #[inline(always)]
     fn find(&self, t: f32) -> usize {
-        if self.ends.len() <= 8 {
-            self.ends.iter().map(|end| usize::from(t >= *end)).sum()
+        let ends = self.ends();
+        if ends.len() <= 8 {
+            ends.iter().map(|piece| usize::from(t >= piece.end)).sum()
         } else {
-            self.ends.partition_point(|end| t >= *end)
+            ends.partition_point(|piece| t >= piece.end)
         }
     }
 
     #[inline(always)]
     fn piece(&self, index: usize) -> Piece {
-        self.pieces.get(index).copied().unwrap_or(Piece { origin: 0.0, color: [0.0; 4], slope: [0.0; 4] })
+        self.pieces.get(index).copied().unwrap_or(Piece { end: 0.0, origin: 0.0, color: [0.0; 4], slope: [0.0; 4] })
     }
 }
 

@@ -115,17 +115,17 @@ fn claim_blocks<S: Simd>(
 #[inline(always)]
 fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, order: u32) -> bool {
     const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
+    const STRIP: i32 = (BLOCK_HEIGHT as i32) << fixed::SHIFT;
     let (first, end) = ((rect.left.max(0) + BLOCK - 1) / BLOCK, rect.right.max(0) / BLOCK);
     if first >= end {
         return false;
     }
-    for strip in 0..frame.strips {
-        let top = frame.strip_top(strip);
-        let bottom = (top + BLOCK_HEIGHT as i32).min(frame.top + frame.rows as i32);
-        if rect.top <= top << fixed::SHIFT && rect.bottom >= bottom << fixed::SHIFT {
-            occlusion.claim(order, strip, first as usize, end as usize);
-        }
-    }
+    let (top, bottom) = (rect.top - (frame.top << fixed::SHIFT), rect.bottom - (frame.top << fixed::SHIFT));
+    let first_strip = (top.max(0) + STRIP - 1) / STRIP;
+    // The last strip may have fewer rows than others.
+    let is_to_end = bottom >= (frame.rows as i32) << fixed::SHIFT;
+    let end_strip = if is_to_end { frame.strips as i32 } else { bottom.max(0) / STRIP };
+    occlusion.claim(order, first_strip as usize..end_strip as usize, first as usize..end as usize);
     true
 }
 
@@ -149,7 +149,7 @@ fn claim_round_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, shape: &RoundR
         let (left, right) = (left.max(inside.left).max(0), right.min(inside.right).max(0));
         let (start, end) = ((left + BLOCK - 1) / BLOCK, right / BLOCK);
         if start < end {
-            occlusion.claim(order, strip as usize, start as usize, end as usize);
+            occlusion.claim(order, strip as usize..strip as usize + 1, start as usize..end as usize);
         }
     }
 }

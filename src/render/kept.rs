@@ -129,7 +129,7 @@ impl<S: Simd> BlockSink<S> for KeepSink<'_> {
     fn block(&mut self, _simd: S, index: usize, coverage: BlockCoverage<'_>) {
         let BlockCoverage { mask, covered, full } = coverage;
         if full.within(self.rows) == Rows::ALL.within(self.rows) {
-            self.occlusion.claim(self.order, self.strip, index, index + 1);
+            self.occlusion.claim(self.order, self.strip..self.strip + 1, index..index + 1);
             self.keep(index, index + 1, PieceCoverage::Rows([255; BLOCK_HEIGHT]));
             return;
         }
@@ -144,7 +144,7 @@ impl<S: Simd> BlockSink<S> for KeepSink<'_> {
         while let Some((from, to)) = self.occlusion.visible_run(self.strip, start, end) {
             self.keep(from, to, PieceCoverage::Rows(*rows));
             if full {
-                self.occlusion.claim(self.order, self.strip, from, to);
+                self.occlusion.claim(self.order, self.strip..self.strip + 1, from..to);
             }
             start = to;
         }

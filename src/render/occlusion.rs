@@ -4,6 +4,8 @@
 //! blocks, the last shape first; what lies beneath a claimed block is neither swept nor painted. When the painting
 //! comes to the shape itself, it gives its claims back and paints them. No pixel differs: each is overwritten whole.
 
+use std::ops::Range;
+
 use crate::geom::IntRect;
 use crate::raster::kernel::Reach;
 use crate::surface::block::BLOCK_WIDTH;
@@ -44,10 +46,8 @@ impl Occlusion {
 
     /// Hides the blocks outside of `first..end` for good: nobody asks for them.
     pub(super) fn hide_outside(&mut self, (first, end): (usize, usize), blocks: usize, strips: usize) {
-        for strip in 0..strips {
-            self.claim(NEVER, strip, 0, first);
-            self.claim(NEVER, strip, end, blocks);
-        }
+        self.claim(NEVER, 0..strips, 0..first);
+        self.claim(NEVER, 0..strips, end..blocks);
         // What no shape hides says nothing about whether the search for hidden blocks pays.
         self.count = 0;
     }
@@ -145,16 +145,20 @@ impl Occlusion {
         }
     }
 
-    /// Claims those of the blocks `start..end` that no shape further in front has.
-    pub(super) fn claim(&mut self, order: u32, strip: usize, start: usize, end: usize) {
-        for index in start / 64..end.div_ceil(64) {
-            let place = strip * self.words + index;
-            if let Some(word) = self.hidden.get_mut(place) {
-                let blocks = between(start, end, index * 64) & !*word;
-                if blocks != 0 {
-                    *word |= blocks;
-                    self.count += blocks.count_ones() as usize;
-                    self.claims.push(Claim { order, word: place as u32, blocks });
+    /// Claims those of `blocks` in each of `strips` that no shape further in front has.
+    #[inline(always)]
+    pub(super) fn claim(&mut self, order: u32, strips: Range<usize>, blocks: Range<usize>) {
+        for index in blocks.start / 64..blocks.end.div_ceil(64) {
+            let wanted = between(blocks.start, blocks.end, index * 64);
+            for strip in strips.clone() {
+                let place = strip * self.words + index;
+                if let Some(word) = self.hidden.get_mut(place) {
+                    let blocks = wanted & !*word;
+                    if blocks != 0 {
+                        *word |= blocks;
+                        self.count += blocks.count_ones() as usize;
+                        self.claims.push(Claim { order, word: place as u32, blocks });
+                    }
                 }
             }
         }
@@ -182,11 +186,11 @@ mod tests {
         occlusion.reset(70, 2);
         let bounds = IntRect::from_ltrb(17, 0, 70 * 16, 16);
         assert_eq!(occlusion.visible(1, bounds), (1, 70));
-        occlusion.claim(9, 1, 1, 2);
-        occlusion.claim(9, 1, 69, 70);
+        occlusion.claim(9, 1..2, 1..2);
+        occlusion.claim(9, 1..2, 69..70);
         // The one in front keeps it.
-        occlusion.claim(4, 1, 69, 70);
-        occlusion.claim(4, 1, 2, 3);
+        occlusion.claim(4, 1..2, 69..70);
+        occlusion.claim(4, 1..2, 2..3);
         assert_eq!((occlusion.visible(1, bounds), occlusion.visible(0, bounds)), ((3, 69), (1, 70)));
         assert_eq!(occlusion.visible(1, IntRect::from_ltrb(16, 0, 48, 16)), (3, 3));
         occlusion.release(3);
@@ -195,7 +199,7 @@ mod tests {
         assert!(!occlusion.is_hidden(1, 2) && occlusion.is_hidden(1, 1) && occlusion.is_hidden(1, 69));
         occlusion.release(9);
         // A run over a word's end.
-        occlusion.claim(3, 0, 60, 67);
+        occlusion.claim(3, 0..1, 60..67);
         assert_eq!((occlusion.visible(0, bounds), occlusion.count()), ((1, 70), 10));
         assert!((0..70).all(|block| occlusion.is_hidden(0, block) == (60..67).contains(&block)));
         assert_eq!(
@@ -207,7 +211,7 @@ mod tests {
             (occlusion.visible_run(1, 0, 70), occlusion.visible_run(1, 64, 70)),
             (Some((0, 70)), Some((64, 70)))
         );
-        occlusion.claim(3, 1, 66, 70);
+        occlusion.claim(3, 1..2, 66..70);
         assert_eq!((occlusion.visible_run(1, 1, 70), occlusion.visible_run(1, 66, 70)), (Some((1, 66)), None));
         occlusion.release(3);
         assert!(!occlusion.is_some() && occlusion.visible(1, bounds) == (1, 70));
@@ -221,7 +225,7 @@ mod tests {
         occlusion.hide_outside((0, 140), 140, 2);
         assert!(!occlusion.is_some());
         occlusion.hide_outside((66, 128), 140, 2);
-        occlusion.claim(3, 1, 60, 67);
+        occlusion.claim(3, 1..2, 60..67);
         assert_eq!((occlusion.visible(0, bounds), occlusion.visible(1, bounds)), ((66, 128), (67, 128)));
         assert_eq!(occlusion.count(), 1);
         occlusion.release(3);
