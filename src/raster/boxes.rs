@@ -14,7 +14,7 @@ use crate::num::lanes::{max_i32, min_i32};
 
 /// A box with its sides.
 #[derive(Clone, Copy, Debug)]
-struct Bounds {
+pub(super) struct Bounds {
     left: i32,
     top: i32,
     right: i32,
@@ -123,16 +123,22 @@ impl Boxes {
         have_length
     }
 
-    /// The leftmost corner of the outline whose edges are in `nodes`; of several the last, which is moved to the right least
-    /// ([`orientation`](super::orientation)).
+    /// The box around the edges in `nodes`.
     #[inline(always)]
-    pub(super) fn leftmost(&self, nodes: Range<usize>, corners: &[FixedPoint]) -> Option<u32> {
+    pub(super) fn around(&self, nodes: Range<usize>) -> Bounds {
+        let nodes = self.levels.first().and_then(|edges| edges.get(nodes)).unwrap_or(&[]);
+        nodes.iter().fold(Bounds::EMPTY, |around, node| around.with(node.around))
+    }
+
+    /// The leftmost corner of the outline whose edges are in `nodes`, and that lies in a box; of several the last, which is moved to the
+    /// right least ([`orientation`](super::orientation)).
+    #[inline(always)]
+    pub(super) fn leftmost(&self, nodes: Range<usize>, around: Bounds, corners: &[FixedPoint]) -> Option<u32> {
         let nodes = self.levels.first()?.get(nodes)?;
-        let left = nodes.iter().fold(i32::MAX, |left, node| left.min(node.around.left));
-        nodes.iter().rev().filter(|node| node.around.left == left).find_map(|node| {
+        nodes.iter().rev().filter(|node| node.around.left == around.left).find_map(|node| {
             let [_, last] = node.outline;
             let own = corners.get(node.first as usize..=last.min(node.first + 7) as usize)?;
-            Some(node.first + own.iter().rposition(|corner| corner.x == left)? as u32)
+            Some(node.first + own.iter().rposition(|corner| corner.x == around.left)? as u32)
         })
     }
 
@@ -206,6 +212,26 @@ impl Boxes {
         true
     }
 
+    /// Calls `found` with those edges in `nodes` whose boxes lie beside a point, to its left or around it. Says how many nodes it looked at.
+    #[inline(always)]
+    pub(super) fn for_left_of_in<S: Simd>(
+        &self,
+        simd: S,
+        nodes: Range<usize>,
+        point: FixedPoint,
+        mut found: impl FnMut(Numbers),
+    ) -> usize {
+        let nodes = self.levels.first().and_then(|edges| edges.get(nodes)).unwrap_or(&[]);
+        for node in nodes {
+            let mut near = node.near(simd, Bounds::left_of(point));
+            while near != 0 {
+                found(node.numbers(node.first + near.trailing_zeros()));
+                near &= near - 1;
+            }
+        }
+        nodes.len()
+    }
+
     /// Calls `found` with the edges whose boxes lie beside a point, to its left or around it. False where `looks` do not suffice.
     #[inline(always)]
     pub(super) fn for_left_of<S: Simd>(
@@ -217,7 +243,7 @@ impl Boxes {
     ) -> bool {
         let Self { levels, height, pairs } = self;
         let Some(top) = height.checked_sub(1) else { return true };
-        let beside = Bounds { left: i32::MIN, top: point.y, right: point.x, bottom: point.y };
+        let beside = Bounds::left_of(point);
         pairs.clear();
         pairs.push(Pair { level: top as u32, one: 0, other: 0 });
         while let Some(Pair { level, one, .. }) = pairs.pop() {
@@ -390,6 +416,18 @@ fn is_one_way(ways: u8) -> bool {
 impl Bounds {
     const EMPTY: Self = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
 
+    /// A row from a point to the left, without end.
+    #[inline(always)]
+    fn left_of(point: FixedPoint) -> Self {
+        Self { left: i32::MIN, top: point.y, right: point.x, bottom: point.y }
+    }
+
+    /// Whether it lies beside a point, to its left or around it.
+    #[inline(always)]
+    pub(super) fn is_left_of(self, point: FixedPoint) -> bool {
+        self.left <= point.x && self.top <= point.y && point.y <= self.bottom
+    }
+
     #[inline(always)]
     fn with(self, other: Self) -> Self {
         Self {
@@ -511,18 +549,28 @@ mod tests {
             let mut random = Random(2);
             for round in 0..150 {
                 let (corners, outlines, mut boxes) = outlines(&mut random, level);
-                let mut node = 0;
+                let point = corners[random.below(corners.len() as i32) as usize];
+                let (mut node, mut found_one_by_one) = (0, Vec::new());
                 for edges in &outlines {
                     let nodes = node..node + edges.len().div_ceil(8);
                     node = nodes.end;
+                    let around = boxes.around(nodes.clone());
+                    let expected = edges.iter().map(|edge| bounds(&corners, *edge)).reduce(Bounds::with).unwrap();
+                    assert_eq!(
+                        [around.left, around.top, around.right, around.bottom],
+                        [expected.left, expected.top, expected.right, expected.bottom]
+                    );
+                    if around.is_left_of(point) {
+                        let found = |edge| found_one_by_one.push(edge);
+                        dispatch!(level, simd => boxes.for_left_of_in(simd, nodes.clone(), point, found));
+                    }
                     let leftmost = edges.iter().map(|[from, _]| *from).min_by_key(|number| {
                         let corner = corners[*number as usize];
                         (corner.x, std::cmp::Reverse(*number))
                     });
-                    assert_eq!(boxes.leftmost(nodes, &corners), leftmost, "round {round}");
+                    assert_eq!(boxes.leftmost(nodes, around, &corners), leftmost, "round {round}");
                 }
                 assert_eq!(boxes.len(), node);
-                let point = corners[random.below(corners.len() as i32) as usize];
                 let (mut found, mut looks) = (Vec::new(), usize::MAX);
                 assert!(dispatch!(level, simd => boxes.for_left_of(simd, point, &mut looks, |edge| found.push(edge))));
                 found.sort_unstable();
@@ -533,6 +581,8 @@ mod tests {
                 });
                 beside.sort_unstable();
                 assert_eq!(found, beside, "round {round}");
+                found_one_by_one.sort_unstable();
+                assert_eq!(found_one_by_one, beside, "round {round}");
             }
         }
     }

@@ -15,7 +15,7 @@ use core::cmp::Ordering;
 
 use fearless_simd::Simd;
 
-use super::boxes::{Boxes, Numbers};
+use super::boxes::{Bounds, Boxes, Numbers};
 use super::edge::{FixedPoint, append_closed};
 use super::orientation::{Corner, Ends, area, is_right_of};
 use crate::num::lanes::round_f64;
@@ -34,6 +34,9 @@ const MOST_CROSSINGS: usize = 1 << 17;
 /// Outlines of more corners are not looked at: what crosses itself so often does so everywhere, and memory matters.
 pub(super) const MOST_CORNERS: usize = 1 << 20;
 
+/// So many outlines are compared with each other one by one.
+const FEW: usize = 8;
+
 /// No crossing.
 const NONE: u32 = u32::MAX;
 
@@ -44,6 +47,7 @@ struct Outline {
     last: u32,
     /// Its first node of boxes, and the first of the next outline.
     nodes: [usize; 2],
+    around: Bounds,
     /// Whether an edge crosses another.
     crosses: bool,
     /// How often outlines wind left of where it starts, which is its leftmost corner.
@@ -154,7 +158,8 @@ impl Resolver {
                 continue;
             }
             let (first, last) = (first as u32, corners.len() as u32 - 1);
-            outlines.push(Outline { first, last, nodes: [node, boxes.len()], crosses: false, start: first, left: 0 });
+            let (nodes, around) = ([node, boxes.len()], boxes.around(node..boxes.len()));
+            outlines.push(Outline { first, last, nodes, around, crosses: false, start: first, left: 0 });
         }
         boxes.build();
     }
@@ -198,40 +203,29 @@ impl Resolver {
     fn find_windings<S: Simd>(&mut self, simd: S) -> Option<()> {
         let Self { corners, outlines, boxes, first, .. } = self;
         let mut looks = LOOKS + LOOKS_PER_CORNER * corners.len();
-        let is_alone = outlines.len() == 1;
-        for outline in outlines {
-            let edges = outline.first as usize..outline.last as usize;
-            outline.crosses = first.get(edges).is_some_and(|first| first.iter().any(|first| *first != NONE));
-            let [node, end] = outline.nodes;
-            let number = boxes.leftmost(node..end, corners)?;
-            let leftmost = corner(corners, number)?;
-            outline.start = leftmost.number;
+        for index in 0..outlines.len() {
+            let Outline { first: start, last, nodes: [node, end], around, .. } = *outlines.get(index)?;
+            let edges = start as usize..last as usize;
+            let crosses = first.get(edges).is_some_and(|first| first.iter().any(|first| *first != NONE));
+            let leftmost = corner(corners, boxes.leftmost(node..end, around, corners)?)?;
             let mut outside = 0;
-            if !is_alone {
-                let own = outline.first..outline.last;
-                let all = boxes.for_left_of(
-                    simd,
-                    leftmost.point,
-                    &mut looks,
-                    #[inline(always)]
-                    |edge| {
-                        if let Some(edge) = ends_of(corners, edge)
-                            && let [from, to] = edge
-                            && !own.contains(&from.number)
-                            && from.is_above(leftmost) != to.is_above(leftmost)
-                        {
-                            let down = from.is_above(leftmost);
-                            // Right of an edge that goes down, seen along it, lies what is left of it on the canvas.
-                            if is_right_of(edge, leftmost, area(edge, leftmost)) != down {
-                                outside += if down { 1 } else { -1 };
-                            }
-                        }
-                    },
-                );
-                if !all {
-                    return None;
+            let mut pass = |edge: Numbers| {
+                if !(start..last).contains(&edge[0]) {
+                    outside += winding_right_of(corners, edge, leftmost);
                 }
+            };
+            if outlines.len() <= FEW {
+                for (_, other) in outlines.iter().enumerate().filter(|(other, _)| *other != index) {
+                    if other.around.is_left_of(leftmost.point) {
+                        let [node, end] = other.nodes;
+                        looks = looks.checked_sub(boxes.for_left_of_in(simd, node..end, leftmost.point, &mut pass))?;
+                    }
+                }
+            } else if !boxes.for_left_of(simd, leftmost.point, &mut looks, &mut pass) {
+                return None;
             }
+            let outline = outlines.get_mut(index)?;
+            (outline.crosses, outline.start) = (crosses, leftmost.number);
             let before = if leftmost.number == outline.first { outline.last - 1 } else { leftmost.number - 1 };
             let after = if leftmost.number + 1 == outline.last { outline.first } else { leftmost.number + 1 };
             let (before, after) = (corner(corners, before)?, corner(corners, after)?);
@@ -309,6 +303,23 @@ fn corner(corners: &[FixedPoint], number: u32) -> Option<Corner> {
 #[inline(always)]
 fn ends_of(corners: &[FixedPoint], [from, to]: Numbers) -> Option<Ends> {
     Some([corner(corners, from)?, corner(corners, to)?])
+}
+
+/// How often an edge winds around a corner of another outline, if it passes to the corner's left: 1 or -1, else 0.
+#[inline(always)]
+fn winding_right_of(corners: &[FixedPoint], edge: Numbers, corner: Corner) -> i32 {
+    let Some([from, to]) = ends_of(corners, edge) else { return 0 };
+    let down = from.is_above(corner);
+    if to.is_above(corner) == down {
+        return 0;
+    }
+    // Right of an edge that goes down, seen along it, lies what is left of it on the canvas.
+    let passes_left = is_right_of([from, to], corner, area([from, to], corner)) != down;
+    match (passes_left, down) {
+        (false, _) => 0,
+        (true, true) => 1,
+        (true, false) => -1,
+    }
 }
 
 /// Leaves out corners from `first` on that are where the one before is.
