@@ -17,8 +17,8 @@ fn main() {
         if !wanted.is_empty() && !wanted.iter().any(|name| name == scene.name) {
             continue;
         }
-        let euc = (scene.samples == 1 && space::euc::can_draw(scene.shading))
-            .then(|| best(3, || space::euc::draw(&scene)));
+        let euc =
+            (scene.samples == 1 && space::euc::can_draw(scene.shading)).then(|| best(3, || space::euc::draw(&scene)));
         for (threads, goal) in [(1, scene.goal.0), (2, scene.goal.1)] {
             let mut target = space::rastrum::target(&scene);
             let mut fragments = 0;

@@ -2,8 +2,8 @@
 
 use rastrum::fearless_simd::{Simd, f32x8, prelude::*};
 use rastrum::space::{
-    Address, DepthFormat, Filter, FragmentShader, Fragments, Pipeline, Primitives, Sampler, Samples, Shade, Target, Texture,
-    VertexColor, vertex_fn,
+    Address, DepthFormat, Filter, FragmentShader, Fragments, Pipeline, Primitives, Sampler, Samples, Shade, Target,
+    Texture, VertexColor, vertex_fn,
 };
 use rastrum::{Color, Pixmap};
 

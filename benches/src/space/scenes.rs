@@ -81,7 +81,8 @@ fn s2(name: &'static str, what: &'static str, samples: u32, goal: (f64, f64)) ->
     let mut vertices = Vec::new();
     for j in 0..=rows {
         for i in 0..=columns {
-            let (a, b) = (i as f32 / columns as f32 * std::f32::consts::TAU, j as f32 / rows as f32 * std::f32::consts::PI);
+            let (a, b) =
+                (i as f32 / columns as f32 * std::f32::consts::TAU, j as f32 / rows as f32 * std::f32::consts::PI);
             let n = [b.sin() * a.cos(), b.cos(), b.sin() * a.sin()];
             let r = 1.45 + 0.06 * (9.0 * a).sin() * (7.0 * b).sin();
             let position = project([n[0] * r, n[1] * r, n[2] * r - 3.0]);
