@@ -34,7 +34,7 @@ enum Repetition {
     Reflect,
 }
 
-/// Colours over one interval: `color` at `origin`, and what each unit of position adds.
+/// Colours over one interval, up to `end`: `color` at `origin`, and what each unit of position adds.
 ///
 /// Where the ramp is opaque, red, green and blue are in 0.5 ..= 255.5, ready to be truncated; else they are
 /// straight, in 0 ..= 1, and alpha is in 0 ..= 255.
