@@ -1,21 +1,31 @@
 //! Jobs on threads.
 
+use std::sync::OnceLock;
+#[cfg(feature = "parallel")]
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// How often helpers were called: those that linger see that they are wanted.
+#[cfg(feature = "parallel")]
+static CALLS: AtomicUsize = AtomicUsize::new(0);
+
 /// The threads that a setting stands for: 0 for one per core, never more than 1024.
 pub(crate) fn threads(wanted: usize) -> usize {
     match wanted {
-        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        0 => cores(),
         wanted => wanted.min(1024),
     }
+}
+
+/// How many threads can run at once: asked once, as files are read to answer it, for 50 µs on Linux.
+fn cores() -> usize {
+    static CORES: OnceLock<usize> = OnceLock::new();
+    *CORES.get_or_init(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
 /// Runs `work` on every job, on up to `threads` threads, of which the caller's is one; returns when all are done.
 #[cfg(feature = "parallel")]
 pub(crate) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) + Sync) {
     use std::sync::Mutex;
-    use std::sync::atomic::{AtomicUsize, Ordering};
-
-    /// How often helpers were called: those that linger see that they are wanted.
-    static CALLS: AtomicUsize = AtomicUsize::new(0);
 
     let helpers = threads.min(jobs.len()).saturating_sub(1);
     let pool = if helpers > 0 { pool(threads - 1) } else { None };
@@ -49,6 +59,27 @@ pub(crate) fn for_each<T: Send>(threads: usize, jobs: Vec<T>, work: impl Fn(T) +
         linger(|| done.load(Ordering::Acquire) == helpers);
     });
 }
+
+/// Offers a job to a helper, if `threads` has room for one, and returns at once. It may come late or never to it: jobs are such
+/// as the caller does where nobody has, and say whether they were in time.
+#[cfg(feature = "parallel")]
+pub(crate) fn offer(threads: usize, job: impl FnOnce() -> bool + Send + 'static) {
+    if threads > 1
+        && let Some(pool) = pool(threads - 1)
+    {
+        let call = CALLS.fetch_add(1, Ordering::Relaxed) + 1;
+        pool.spawn(move || {
+            // Another will follow, or the frame's end.
+            if job() {
+                linger(|| CALLS.load(Ordering::Relaxed) != call);
+            }
+        });
+    }
+}
+
+/// There are no helpers.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn offer(_threads: usize, _job: impl FnOnce() -> bool) {}
 
 /// Waits awake until `ready` says so, for as long as it would take to fall asleep and be woken: 50 µs. A picture of a
 /// millisecond has three such moments.
@@ -87,4 +118,25 @@ fn pool(threads: usize) -> Option<std::sync::Arc<rayon::ThreadPool>> {
     let pool = Arc::new(pool);
     pools.push((threads, Arc::clone(&pool)));
     Some(pool)
+}
+
+#[cfg(all(test, feature = "parallel"))]
+mod tests {
+    use std::sync::mpsc::{RecvTimeoutError, channel};
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn offers_are_taken_up_by_helpers_alone() {
+        let (done, all) = channel();
+        let caller = std::thread::current().id();
+        let (first, second) = (done.clone(), done);
+        offer(2, move || first.send((1, std::thread::current().id())).is_ok());
+        // One thread has no helper: the job is dropped.
+        offer(1, move || second.send((2, std::thread::current().id())).is_ok());
+        let (number, thread) = all.recv_timeout(Duration::from_secs(60)).unwrap();
+        assert!(number == 1 && thread != caller);
+        assert_eq!(all.recv_timeout(Duration::from_secs(60)), Err(RecvTimeoutError::Disconnected));
+    }
 }

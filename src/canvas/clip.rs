@@ -133,6 +133,11 @@ impl Canvas<'_> {
         self.count_pictures(size);
     }
 
+    /// Whether a state names a clip.
+    pub(super) fn is_clipped(&self) -> bool {
+        std::iter::once(&self.state).chain(self.saves.states()).any(|state| state.clip != ClipId::NONE)
+    }
+
     /// Carries the clips that states still name over from a rendered recording to the new one.
     pub(super) fn carry_clips(&mut self, old: &DisplayList) {
         let mut kept: Vec<u32> = Vec::new();

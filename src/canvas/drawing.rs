@@ -194,6 +194,9 @@ impl Canvas<'_> {
             bounds,
             opaque,
         }));
+        if self.sections.is_next(self.list.commands.len(), self.list.points.len()) {
+            self.end_section();
+        }
     }
 
     /// Records the shadow of a draw: the same draw in a recording of its own, on a surface that holds what of it the
@@ -247,14 +250,14 @@ impl Canvas<'_> {
         if list.commands.is_empty() || bounds.is_empty() {
             return 0;
         }
-        self.list.commands.push(Command::Effect(Box::new(Effect {
+        self.list.add_effect(Effect {
             list,
             extent,
             kind: EffectKind::Shadow { offset: (dx, dy), deviation, color: shadow.color },
             blend_mode: paint.blend_mode,
             clip: self.state.clip,
             bounds,
-        })));
+        });
         pixels(bounds) * 4
     }
 

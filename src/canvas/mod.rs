@@ -8,6 +8,7 @@ mod fold;
 mod image;
 mod pixels;
 mod scene;
+mod section;
 mod state;
 
 pub use filter::LayerOptions;
@@ -20,6 +21,7 @@ use crate::path::Path;
 use crate::render::{RenderSettings, Renderer};
 use crate::surface::{Limits, Pixmap, PixmapMut};
 
+use section::Sections;
 use state::{OpenLayer, Saves, State};
 
 /// A canvas: drawing calls are recorded and become pixels together, band by band, when the picture is asked
@@ -42,7 +44,9 @@ use state::{OpenLayer, Saves, State};
 pub struct Canvas<'a> {
     target: Target<'a>,
     settings: RenderSettings,
+    /// What was recorded since the last section.
     list: DisplayList,
+    sections: Sections,
     renderer: Renderer,
     state: State,
     saves: Saves,
@@ -106,6 +110,7 @@ impl<'a> Canvas<'a> {
             target,
             settings: RenderSettings::default(),
             list: DisplayList::default(),
+            sections: Sections::default(),
             renderer: Renderer::default(),
             state: State::default(),
             saves: Saves::default(),
@@ -159,11 +164,17 @@ impl<'a> Canvas<'a> {
         };
         let result = self.renderer.render(&self.list, &mut target, self.settings);
         self.pictures = 0;
-        if self.list.clips.is_empty() {
-            self.list.clear();
-        } else {
+        self.sections = Sections::default();
+        if self.renderer.end_sections() {
+            let first = self.renderer.spare_list();
+            let last = std::mem::replace(&mut self.list, first);
+            self.carry_clips(&last);
+            self.renderer.keep(last);
+        } else if self.is_clipped() {
             let old = std::mem::take(&mut self.list);
             self.carry_clips(&old);
+        } else {
+            self.list.clear();
         }
         match self.failed.take() {
             Some(error) => Err(error),

@@ -90,6 +90,11 @@ impl Saves {
         Some(state)
     }
 
+    /// The saved states.
+    pub(super) fn states(&self) -> impl Iterator<Item = &State> {
+        self.stack.iter().map(|(state, _)| state)
+    }
+
     /// The saved states, to change.
     pub(super) fn states_mut(&mut self) -> impl Iterator<Item = &mut State> {
         self.stack.iter_mut().map(|(state, _)| state)
@@ -137,22 +142,22 @@ pub(super) struct FilterLayer {
 }
 
 impl FilterLayer {
-    /// The command that draws what `list` recorded.
-    pub(super) fn effect(&self, mut list: DisplayList) -> Command {
+    /// The effect that draws what `list` recorded.
+    fn effect(&self, mut list: DisplayList) -> Effect {
         if list.commands.iter().any(|command| matches!(command, Command::EndMask(..))) {
             // A mask applies to a layer, which the filter's own surface is not.
             let layer = LayerStart::plain(IntRect::from_xywh(0, 0, self.extent.width(), self.extent.height()));
             list.commands.insert(0, Command::BeginLayer(layer.clone()));
             list.commands.push(Command::EndLayer(layer));
         }
-        Command::Effect(Box::new(Effect {
+        Effect {
             list,
             extent: self.extent,
             kind: EffectKind::Filter { filter: self.filter.clone(), to_device: self.to_outer, opacity: self.opacity },
             blend_mode: self.blend_mode,
             clip: self.clip,
             bounds: self.bounds,
-        }))
+        }
     }
 }
 
@@ -166,7 +171,7 @@ impl OpenLayerKind {
                 let outer = std::mem::take(&mut layer.outer_list);
                 let inner = std::mem::replace(list, outer);
                 if !layer.bounds.is_empty() {
-                    list.commands.push(layer.effect(inner));
+                    list.add_effect(layer.effect(inner));
                 }
             }
         }
@@ -180,7 +185,7 @@ impl OpenLayerKind {
             Self::Filter(layer) => {
                 let inner = std::mem::replace(list, layer.outer_list.clone());
                 if !layer.bounds.is_empty() {
-                    list.commands.push(layer.effect(inner));
+                    list.add_effect(layer.effect(inner));
                 }
             }
         }

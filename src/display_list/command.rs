@@ -177,11 +177,14 @@ pub(crate) struct DisplayList {
     /// names the same, which then is seen without touching them.
     outlines: Vec<Arc<Outline>>,
     shared: usize,
+    /// How many points they have.
+    shared_points: usize,
     pub(crate) spans: Vec<Span>,
     pub(crate) strokes: Vec<Stroke>,
     pub(crate) transforms: Vec<Transform>,
     pub(crate) paints: Vec<PreparedPaint>,
     pub(crate) clips: Vec<ClipNode>,
+    has_effects: bool,
 }
 
 impl DisplayList {
@@ -192,17 +195,35 @@ impl DisplayList {
         self.points.clear();
         self.outlines.truncate(self.shared);
         self.shared = 0;
+        self.shared_points = 0;
         self.spans.clear();
         self.strokes.clear();
         self.transforms.clear();
         self.paints.clear();
         self.clips.clear();
+        self.has_effects = false;
+    }
+
+    /// Adds an effect as a command.
+    pub(crate) fn add_effect(&mut self, effect: Effect) {
+        self.commands.push(Command::Effect(Box::new(effect)));
+        self.has_effects = true;
+    }
+
+    /// How much work it is to prepare it, to a guess: as much as so many points.
+    pub(crate) fn work(&self) -> usize {
+        2 * self.commands.len() + self.points.len() + self.shared_points
+    }
+
+    /// Whether there was an effect among the commands.
+    pub(crate) fn has_effects(&self) -> bool {
+        self.has_effects
     }
 
     /// Stores the outline of a path, or shares it.
     pub(crate) fn add_path(&mut self, path: &Path) -> OutlineRef {
         match path.shared_outline() {
-            Some(outline) => self.share_outline(outline),
+            Some(outline) => self.share_outline(outline, path.points().len()),
             None => self.copy_outline(path.verbs(), path.points()),
         }
     }
@@ -210,7 +231,7 @@ impl DisplayList {
     /// Stores an outline that another recording has.
     pub(crate) fn add_outline_of(&mut self, other: &Self, outline: OutlineRef) -> OutlineRef {
         match outline.shared().and_then(|index| other.outlines.get(index)) {
-            Some(outline) => self.share_outline(outline),
+            Some(outline) => self.share_outline(outline, outline.parts().1.len()),
             None => {
                 let (verbs, points) = other.outline(outline);
                 self.copy_outline(verbs, points)
@@ -218,8 +239,9 @@ impl DisplayList {
         }
     }
 
-    fn share_outline(&mut self, outline: &Arc<Outline>) -> OutlineRef {
+    fn share_outline(&mut self, outline: &Arc<Outline>, points: usize) -> OutlineRef {
         let index = self.shared;
+        self.shared_points += points;
         match self.outlines.get_mut(index) {
             Some(last) if Arc::ptr_eq(last, outline) => {}
             Some(last) => *last = Arc::clone(outline),

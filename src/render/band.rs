@@ -7,7 +7,6 @@
 
 use fearless_simd::Simd;
 
-use super::Drawing;
 use super::clip_cache::{ClipCache, clip_for};
 use super::coverage::{Coverage, accumulate};
 use super::hidden::{find_hidden, find_visible};
@@ -16,8 +15,8 @@ use super::layer::{LayerBuffer, mask_layer, open_surface};
 use super::occlusion::Occlusion;
 use super::painter::{Look, Source, paint_coverage, paint_kept, paint_rect};
 use super::plan::Plan;
-use super::prepare::Chunk;
 use super::surface::Surface;
+use super::{Drawing, Piece};
 use crate::blend::BlendMode;
 use crate::display_list::{Command, DisplayList, Draw, Geometry, LayerStart};
 use crate::geom::{FixedRect, IntRect};
@@ -53,10 +52,12 @@ pub(super) struct BandScratch {
 }
 
 /// What all of a band's steps need to know.
+#[derive(Clone, Copy)]
 pub(super) struct Frame<'a> {
+    /// The recording of the piece in work.
     pub(super) list: &'a DisplayList,
     pub(super) plan: &'a Plan,
-    pub(super) chunks: &'a [Chunk],
+    pub(super) pieces: &'a [Piece<'a>],
     pub(super) index: usize,
     /// Device y of the band's first row.
     pub(super) top: i32,
@@ -73,10 +74,16 @@ pub(super) struct Frame<'a> {
 impl<'a> Frame<'a> {
     /// Band `index` of a drawing: `rows` rows from device row `top` on, in the blocks `seen`.
     pub(super) fn new(drawing: &Drawing<'a>, index: usize, top: i32, rows: usize, seen: (usize, usize)) -> Self {
-        let Drawing { list, plan, chunks, frame } = *drawing;
+        let Drawing { list, plan, pieces, frame } = *drawing;
         let (strips, blocks) = (rows.div_ceil(BLOCK_HEIGHT), (frame.width() as usize).div_ceil(BLOCK_WIDTH));
         let is_uncached = u64::from(frame.width()) * u64::from(frame.height()) > UNCACHED_PIXELS;
-        Self { list, plan, chunks, index, top, rows, strips, blocks, seen, is_uncached }
+        Self { list, plan, pieces, index, top, rows, strips, blocks, seen, is_uncached }
+    }
+
+    /// The same for what `piece` holds.
+    #[inline(always)]
+    pub(super) fn of(&self, piece: &Piece<'a>) -> Self {
+        Self { list: piece.list, ..*self }
     }
 
     /// The band's device pixels, up to the end of the last block.
@@ -112,9 +119,15 @@ pub(super) fn render(frame: &Frame<'_>, mut target: Surface<'_>, scratch: &mut B
 #[inline(always)]
 fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, scratch: &mut BandScratch) {
     find_hidden(simd, frame, scratch);
-    let mut order = 0;
-    for (chunk_index, chunk) in frame.chunks.iter().enumerate() {
-        let Some(band) = chunk.band(frame.index) else { continue };
+    let (mut order, mut list) = (0, frame.list);
+    for (piece_index, piece) in frame.pieces.iter().enumerate() {
+        let Some(band) = piece.chunk.band(frame.index) else { continue };
+        let frame = &frame.of(piece);
+        if !std::ptr::eq(frame.list, list) {
+            // Clips are named within a recording.
+            scratch.clips.reset();
+            list = frame.list;
+        }
         for item in &band.items {
             let place = order;
             scratch.occlusion.release(place);
@@ -132,7 +145,7 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                 continue;
             }
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };
-            let boundary = chunk.boundary(band, *item);
+            let boundary = piece.chunk.boundary(band, *item);
             match command {
                 Command::Draw(draw) => {
                     let Some(paint) = frame.list.paints.get(draw.paint as usize) else { continue };
@@ -142,7 +155,7 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                         paint_draw(simd, frame, target, scratch, draw, paint, boundary);
                     }
                 }
-                Command::Clip(id) => scratch.clips.edges.push((id.0, chunk_index, *item)),
+                Command::Clip(id) => scratch.clips.edges.push((id.0, piece_index, *item)),
                 Command::BeginLayer(LayerStart { bounds, .. }) | Command::BeginMask(bounds) => {
                     let mut layer = scratch.spare_layers.pop().unwrap_or_default();
                     layer.reset(frame.seen(*bounds));

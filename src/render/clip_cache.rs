@@ -16,7 +16,7 @@ const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
 /// The clips of one band: where their edges lie, and the coverage of those in use.
 #[derive(Debug, Default)]
 pub(super) struct ClipCache {
-    /// Clip, chunk, and what the chunk lists for it; in order of clips.
+    /// Clip, piece, and what the piece lists for it; in order of clips.
     pub(super) edges: Vec<(u32, usize, BandItem)>,
     /// The coverage of a chain of clips, each within the one before.
     chain: Vec<(u32, BandMask)>,
@@ -91,8 +91,8 @@ fn build_clip_inner<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScrat
                 let found = scratch.clips.edges.binary_search_by_key(&id, |(clip, ..)| *clip);
                 let place = found.ok().and_then(|index| scratch.clips.edges.get(index)).copied();
                 let boundary = place
-                    .and_then(|(_, chunk, item)| {
-                        let chunk = frame.chunks.get(chunk)?;
+                    .and_then(|(_, piece, item)| {
+                        let chunk = frame.pieces.get(piece)?.chunk;
                         Some(chunk.boundary(chunk.band(frame.index)?, item))
                     })
                     .unwrap_or_default();

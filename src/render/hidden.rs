@@ -23,10 +23,12 @@ const WORK_PER_BLOCK: usize = 100;
 /// Lets the band's opaque shapes claim the blocks that they cover whole, front to back.
 #[inline(never)]
 pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScratch) {
-    let mut place = frame.chunks.iter().filter_map(|chunk| chunk.band(frame.index)).map(|band| band.items.len()).sum();
+    let mut place =
+        frame.pieces.iter().filter_map(|piece| piece.chunk.band(frame.index)).map(|band| band.items.len()).sum();
     let (mut depth, mut work) = (0_u32, 0);
-    for chunk in frame.chunks.iter().rev() {
-        let Some(band) = chunk.band(frame.index) else { continue };
+    for piece in frame.pieces.iter().rev() {
+        let Some(band) = piece.chunk.band(frame.index) else { continue };
+        let frame = &frame.of(piece);
         for item in band.items.iter().rev() {
             place -= 1;
             match item.role {
@@ -50,7 +52,7 @@ pub(super) fn find_hidden<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut Ban
                     work += usize::from(claim_rect(frame, &mut scratch.occlusion, rect, place as u32));
                 }
             } else if let Some(Command::Draw(draw)) = frame.list.commands.get(item.command as usize) {
-                let boundary = chunk.boundary(band, *item);
+                let boundary = piece.chunk.boundary(band, *item);
                 if may_hide(frame, draw, boundary.cost(), place) {
                     work += boundary.cost() + 1;
                     claim_blocks(simd, frame, scratch, draw, boundary, place as u32);

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::plan::{Plan, plan};
-use super::{RenderSettings, Renderer};
+use super::{Drawing, RenderSettings, Renderer};
 use crate::display_list::DisplayList;
 use crate::error::Result;
 use crate::filter::{self, Image};
@@ -62,7 +62,9 @@ impl<'a> Parts<'a> {
         let whole = IntRect::from_ltrb(left, top, area.right, bottom);
         let mut pixmap = Pixmap::new(whole.width(), whole.height())?;
         let target = &mut pixmap.as_mut();
-        self.renderer.paint_part(self.list, &self.plan, self.chunks, self.frame, whole, target, self.settings);
+        let pieces: Vec<_> = self.renderer.pieces(self.list, self.chunks).collect();
+        let drawing = Drawing { list: self.list, plan: &self.plan, pieces: &pieces, frame: self.frame };
+        self.renderer.paint_part(&drawing, whole, target, self.settings);
         Ok((pixmap, left, top))
     }
 }

@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use fearless_simd::Simd;
 
+use super::RenderSettings;
 use super::plan::Plan;
 use crate::blend::BlendMode;
 use crate::display_list::{ClipId, ClipKind, Command, DisplayList, Draw, Geometry};
 use crate::geom::{FixedRect, IntRect, Point, Rect};
-use crate::num::level::{SimdLevel, dispatch};
+use crate::num::level::dispatch;
 use crate::paint::PreparedPaint;
 use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
@@ -52,19 +53,17 @@ impl Chunk {
         self.bins.boundary(band, item)
     }
 
-    /// Lists the edges of `range` of the list's commands.
-    #[expect(clippy::too_many_arguments, reason = "the frame's facts, passed once per chunk")]
+    /// Lists the edges of `range` of the list's commands for the bands of `frame`. `settings` are resolved.
     pub(super) fn prepare(
         &mut self,
         list: &DisplayList,
         plan: &Plan,
         range: Range<usize>,
         frame: IntRect,
-        bands: usize,
-        height_shift: u32,
-        level: SimdLevel,
+        settings: RenderSettings,
     ) {
-        self.bins.reset(bands, height_shift);
+        let RenderSettings { level, band_height, .. } = settings;
+        self.bins.reset(frame.height().div_ceil(band_height) as usize, band_height.trailing_zeros());
         self.stroke.level = level;
         dispatch!(level, simd => self.prepare_with(simd, list, plan, range, frame));
     }

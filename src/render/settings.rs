@@ -41,6 +41,11 @@ impl RenderSettings {
         Self { band_height, ..self }
     }
 
+    /// Whether there may be more than one thread.
+    pub(crate) fn is_parallel(self) -> bool {
+        pool::threads(self.threads) > 1
+    }
+
     /// The settings with every default and range applied.
     pub(super) fn resolved(self) -> Self {
         Self {

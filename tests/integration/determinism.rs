@@ -77,6 +77,91 @@ fn every_level_thread_count_and_band_height_gives_the_same_bytes() {
     }
 }
 
+/// Thousands of shapes with all that may come between them, drawn in two frames; the pixels of the first and of the last,
+/// and what was read in between.
+fn draw_long(settings: RenderSettings, heights: [u32; 3]) -> Vec<Vec<u8>> {
+    let mut canvas = Canvas::with_settings(200, 150, settings).unwrap();
+    let all = rastrum::IntRect::from_xywh(0, 0, 200, 150);
+    let mut seed = 3_u32;
+    let mut random = |limit: f32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) as f32 / 16_777_216.0 * limit
+    };
+    let stops = [GradientStop::new(0.0, Color::RED), GradientStop::new(1.0, Color::from_rgba(0.0, 0.2, 1.0, 0.4))];
+    let mut seen = Vec::new();
+    let mut star = Path::new();
+    star.polygon(&[(0.0, 9.0), (3.0, -9.0), (6.0, 9.0), (-4.0, -3.0), (9.0, -1.0)].map(Point::from));
+    let mut shapes = |canvas: &mut Canvas<'_>, count: usize| {
+        for index in 0..count {
+            let at = (random(200.0), random(150.0));
+            let color = Color::from_rgba(random(1.0), random(1.0), random(1.0), 0.3 + random(0.9).min(0.7));
+            match index % 5 {
+                0 => canvas.fill_rect(Rect::from_xywh(at.0, at.1, random(12.0), random(50.0)), color),
+                1 => canvas.fill_circle(at, random(7.0), color),
+                2 => canvas.draw_line(at, (at.0 + random(30.0), at.1 - random(30.0)), &Stroke::new(1.5), color),
+                3 => canvas.draw_pixel_circle((at.0 as i32, at.1 as i32), 5, color),
+                _ => {
+                    canvas.save();
+                    canvas.translate(at.0, at.1);
+                    let gradient = LinearGradient::new((-5.0, -9.0), (5.0, 9.0), stops);
+                    canvas.fill_path(&star, FillRule::EvenOdd, gradient);
+                    canvas.restore();
+                }
+            }
+        }
+    };
+    canvas.clear(Color::WHITE);
+    for _ in 0..2 {
+        shapes(&mut canvas, 2500);
+        canvas.set_settings(settings.with_band_height(heights[0]));
+        canvas.save();
+        let mut round = Path::new();
+        round.circle((90.0, 60.0), 55.5);
+        canvas.clip_path(&round, FillRule::NonZero, Antialias::Analytic);
+        shapes(&mut canvas, 700);
+        canvas.restore();
+        // Clips of sections that have ended.
+        shapes(&mut canvas, 1500);
+        canvas.save();
+        let mut other = Path::new();
+        other.circle((140.0, 90.0), 45.5);
+        canvas.clip_path(&other, FillRule::NonZero, Antialias::Analytic);
+        shapes(&mut canvas, 60);
+        canvas.restore();
+        shapes(&mut canvas, 1200);
+        canvas.push_layer(0.6, BlendMode::Multiply);
+        shapes(&mut canvas, 1300);
+        seen.push(canvas.read_pixels(all).unwrap().into_vec());
+        canvas.pop_layer();
+        canvas.set_settings(settings.with_band_height(heights[1]));
+        shapes(&mut canvas, 1500);
+        canvas.set_shadow(Shadow { offset_x: 5.0, offset_y: 4.0, deviation: 3.0, color: Color::BLACK });
+        shapes(&mut canvas, 3);
+        canvas.set_shadow(None);
+        shapes(&mut canvas, 1500);
+        canvas.set_settings(settings.with_band_height(heights[2]));
+        // With a clip that goes on in the next frame.
+        canvas.clip_path(&round, FillRule::NonZero, Antialias::Analytic);
+        shapes(&mut canvas, 5);
+        canvas.flush().unwrap();
+        seen.push(canvas.read_pixels(all).unwrap().into_vec());
+    }
+    seen
+}
+
+#[test]
+fn what_is_prepared_while_the_rest_is_recorded_gives_the_same_bytes() {
+    let settings = RenderSettings::default();
+    let expected = draw_long(settings.with_threads(1), [32, 32, 32]);
+    assert!(expected.windows(2).all(|pair| pair[0] != pair[1]), "frames are alike");
+    for threads in [2, 5] {
+        for heights in [[32, 32, 32], [8, 64, 16]] {
+            let drawn = draw_long(settings.with_threads(threads), heights);
+            assert!(drawn == expected, "{threads} threads, bands of {heights:?} rows");
+        }
+    }
+}
+
 /// Fixtures ask one question each, so the one that fails says which step is to blame.
 #[cfg(all(feature = "svg", feature = "codec"))]
 #[test]
