@@ -33,7 +33,7 @@ struct Node {
     first: u32,
     /// The first and the last edge of the outline that all of them belong to; meaningless where they do not.
     outline: [u32; 2],
-    /// Whether some go to the right, to the left, down and up; all four where they are of several outlines.
+    /// Of nodes: whether all edges go to the right, to the left, down and up, or along it.
     ways: u8,
     /// Whether all go one way, and so meet only where they follow each other.
     is_ordered: bool,
@@ -155,8 +155,9 @@ impl Boxes {
                 continue;
             }
             if let Some(level) = above.first_mut() {
+                let are_edges = self.height == 1;
                 for (first, nodes) in (0..).step_by(8).zip(below.chunks(8)) {
-                    level.push(Node::of_nodes(nodes, first));
+                    level.push(Node::of_nodes(nodes, first, are_edges));
                 }
             }
             self.height += 1;
@@ -295,11 +296,6 @@ impl Node {
         let ((from_x, from_y), (to_x, to_y)) = (coordinates(simd, start), coordinates(simd, end));
         let others = !0_u32 << count & 0xff;
         let have_length = (from_x.simd_eq(to_x) & from_y.simd_eq(to_y)).to_bitmask() as u32 & !others == 0;
-        let way = |low: i32x8<S>, high: i32x8<S>, way: u8| {
-            if low.simd_lt(high).to_bitmask() as u32 & !others != 0 { way } else { 0 }
-        };
-        let across = way(from_x, to_x, RIGHT) | way(to_x, from_x, LEFT);
-        let ways = across | way(from_y, to_y, DOWN) | way(to_y, from_y, UP);
         // Each goes some way along the line from the first corner to the last. The margin is more than what rounding may add.
         let chord = corners.get(count).map_or((0, 0), |end| (end.x - start[0].x, end.y - start[0].y));
         let (across, down) = ((to_x - from_x).to_float::<f32x8<S>>(), (to_y - from_y).to_float::<f32x8<S>>());
@@ -322,25 +318,45 @@ impl Node {
         };
         let (left, top, right, bottom) = (left.to_array(), top.to_array(), right.to_array(), bottom.to_array());
         let ordered = if is_ordered { 0xff } else { 0 };
-        (Self { left, top, right, bottom, around, first, outline, ways, is_ordered, ordered }, have_length)
+        (Self { left, top, right, bottom, around, first, outline, ways: 0, is_ordered, ordered }, have_length)
     }
 
-    /// At most eight nodes, of which the first is number `first`.
+    /// At most eight nodes, of which the first is number `first`, and whether they are those of edges.
     #[inline(always)]
-    fn of_nodes(nodes: &[Self], first: u32) -> Self {
+    fn of_nodes(nodes: &[Self], first: u32, are_edges: bool) -> Self {
         let outline = nodes.first().map_or([0; 2], |node| node.outline);
         let mut node = Self { first, outline, ..Self::EMPTY };
-        let Self { left, top, right, bottom, around, ways, ordered, .. } = &mut node;
+        let Self { left, top, right, bottom, around, ordered, .. } = &mut node;
         let sides = left.iter_mut().zip(top).zip(right.iter_mut().zip(bottom));
         for ((lane, child), ((left, top), (right, bottom))) in nodes.iter().enumerate().zip(sides) {
             *ordered |= u8::from(child.is_ordered) << lane;
             (*left, *top) = (child.around.left, child.around.top);
             (*right, *bottom) = (child.around.right, child.around.bottom);
             *around = around.with(child.around);
-            *ways |= if child.outline == outline { child.ways } else { RIGHT | LEFT | DOWN | UP };
         }
-        node.is_ordered = is_one_way(node.ways);
+        if nodes.iter().all(|child| child.outline == outline) {
+            node.ways = node.ways_of_lanes();
+            // Few get here.
+            if is_one_way(node.ways) {
+                let own = |child: &Self| if are_edges { child.ways_of_lanes() } else { child.ways };
+                node.ways = nodes.iter().fold(node.ways, |ways, child| ways & own(child));
+                node.is_ordered = is_one_way(node.ways);
+            }
+        }
         node
+    }
+
+    /// The ways that its boxes follow each other, if what they hold does: each ends where the next begins.
+    #[inline(always)]
+    fn ways_of_lanes(&self) -> u8 {
+        let Self { left, top, right, bottom, .. } = self;
+        let count = left.iter().zip(right).take_while(|(left, right)| left <= right).count();
+        let follow = |ends: &[i32; 8], starts: &[i32; 8], way: u8| {
+            let starts = starts.iter().take(count).skip(1);
+            if ends.iter().zip(starts).all(|(end, start)| end == start) { way } else { 0 }
+        };
+        let across = follow(right, left, RIGHT) | follow(left, right, LEFT);
+        across | follow(bottom, top, DOWN) | follow(top, bottom, UP)
     }
 
     /// Calls `meet` with the edges of this node and others of another, or the same, whose boxes meet, and that do not follow each other. Says how
@@ -354,12 +370,8 @@ impl Node {
     ) -> Option<usize> {
         let is_same = self.first == others.first;
         let follows = others.first == self.first + 8 && self.outline == others.outline;
-        let mut lanes = self.near(simd, others.around);
-        if is_same {
-            // Of the last two there is none to compare with.
-            lanes &= 0x3f;
-        }
-        let looks = 1 + lanes.count_ones() as usize;
+        let mut lanes = if is_same { self.near_own(simd) } else { self.near(simd, others.around) };
+        let looks = if is_same { Self::OWN_LOOKS } else { 1 + lanes.count_ones() as usize };
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
             lanes &= lanes - 1;
@@ -394,6 +406,29 @@ impl Node {
         Bounds { left: at(&self.left), top: at(&self.top), right: at(&self.right), bottom: at(&self.bottom) }
     }
 
+    /// How many looks it counts for to compare a node's edges with each other.
+    const OWN_LOOKS: usize = 4;
+
+    /// Which boxes meet one of those that come after the next, as bits.
+    #[inline(always)]
+    fn near_own<S: Simd>(&self, simd: S) -> u32 {
+        let load = |lanes: &[i32; 8]| i32x8::load_array_ref(simd, lanes);
+        let (left, top, right, bottom) = (load(&self.left), load(&self.top), load(&self.right), load(&self.bottom));
+        // Which boxes meet the one so many lanes further on, around the end.
+        macro_rules! near {
+            ($step:literal) => {{
+                let apart = left.slide::<$step>(left).simd_gt(right)
+                    | left.simd_gt(right.slide::<$step>(right))
+                    | top.slide::<$step>(top).simd_gt(bottom)
+                    | top.simd_gt(bottom.slide::<$step>(bottom));
+                !(apart.to_bitmask() as u32) & 0xff
+            }};
+        }
+        // Two of eight in a ring are at most four steps apart; those one step apart follow each other, but for the last and the first.
+        let (first, second, third, fourth) = (near!(1), near!(2), near!(3), near!(4));
+        first >> 7 | (second & 0x3f | second >> 6) | (third & 0x1f | third >> 5) | fourth & 0x0f
+    }
+
     /// Which boxes meet another, as bits.
     #[inline(always)]
     fn near<S: Simd>(&self, simd: S, other: Bounds) -> u32 {
@@ -410,7 +445,7 @@ impl Node {
 /// Whether all go one way across and one way down.
 #[inline(always)]
 fn is_one_way(ways: u8) -> bool {
-    ways & (RIGHT | LEFT) != RIGHT | LEFT && ways & (DOWN | UP) != DOWN | UP
+    ways & (RIGHT | LEFT) != 0 && ways & (DOWN | UP) != 0
 }
 
 impl Bounds {
@@ -584,6 +619,42 @@ mod tests {
                 found_one_by_one.sort_unstable();
                 assert_eq!(found_one_by_one, beside, "round {round}");
             }
+        }
+    }
+
+    #[test]
+    fn what_goes_one_way_is_known() {
+        let mut random = Random(3);
+        for round in 0..200 {
+            // 300 edges that go one way, or along an axis, and three back to the start around them.
+            let (across, down) = ([1, -1][round % 2], [1, -1][round / 2 % 2]);
+            let mut at = FixedPoint { x: 0, y: 0 };
+            let mut corners = vec![at];
+            while corners.len() <= 300 {
+                let step = (random.below(3), random.below(3));
+                at = FixedPoint { x: at.x + across * step.0, y: at.y + down * step.1 };
+                if step != (0, 0) {
+                    corners.push(at);
+                }
+            }
+            corners.push(FixedPoint { x: at.x + across, y: at.y + down });
+            corners.extend([FixedPoint { x: at.x + across, y: -down }, FixedPoint { x: 0, y: -down }, corners[0]]);
+            // In every other round one of the first 64 edges goes back.
+            let back = 1 + random.below(63) as usize;
+            let is_straight = round % 8 < 4;
+            if !is_straight {
+                let (before, after) = (corners[back - 1], corners[back + 1]);
+                corners[back] = match round % 3 {
+                    0 => FixedPoint { x: before.x - across, ..after },
+                    _ => FixedPoint { y: after.y + down, ..before },
+                };
+            }
+            let mut boxes = Boxes::default();
+            assert!(dispatch!(SimdLevel::best(), simd => boxes.add(simd, &corners, 0)));
+            boxes.build();
+            let is_ordered: Vec<_> = boxes.levels[1].iter().map(|node| node.is_ordered).collect();
+            assert_eq!(is_ordered, [is_straight, true, true, true, false], "round {round}");
+            assert!(!boxes.levels[2][0].is_ordered);
         }
     }
 

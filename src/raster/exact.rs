@@ -104,7 +104,15 @@ impl Resolver {
             #[inline(always)]
             || {
                 self.list(simd, polygons);
-                let are_found = self.find_crossings(simd) && self.find_windings(simd).is_some();
+                if !self.find_crossings(simd) {
+                    return false;
+                }
+                // One that does not cross itself winds around its inside once.
+                self.are_whole = self.outlines.len() <= 1 && self.crossings.is_empty();
+                if self.are_whole {
+                    return true;
+                }
+                let are_found = self.find_windings(simd).is_some();
                 if are_found {
                     match rule {
                         FillRule::NonZero => self.keep::<false>(),
