@@ -33,7 +33,8 @@ struct Node {
     first: u32,
     /// The first and the last edge of the outline that all of them belong to; meaningless where they do not.
     outline: [u32; 2],
-    /// Of nodes: whether all edges go to the right, to the left, down and up, or along it.
+    /// Above the lowest level: the ways that all edges go, those along the other axis counted among them. Known for sure only where there is one
+    /// across and one down.
     ways: u8,
     /// Whether all go one way, and so meet only where they follow each other.
     is_ordered: bool,
