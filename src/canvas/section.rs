@@ -2,7 +2,7 @@
 
 use super::Canvas;
 
-/// So many commands, or points of their outlines, are worth the waking of a thread: it takes some 30 µs to record them.
+/// So many commands, or points of their outlines, are worth the waking of a thread: it takes 30 to 100 µs to record them.
 const FEWEST: (usize, usize) = (1024, 16_384);
 /// Later sections are at least this part of all before them: a million commands make some fifty, each of which has a list for each
 /// band.

@@ -19,7 +19,8 @@ const WORK: usize = 16_384;
 /// A section has at most so many parts.
 const MOST_PARTS: usize = 32;
 
-/// Commands that need nothing of those before and after them: without effects, within no clip and no layer.
+/// Commands that need nothing of those before and after them: without effects, and with the layers that they begin ended, the clips that
+/// they set given up.
 #[derive(Debug)]
 pub(super) struct Section {
     list: DisplayList,

@@ -77,8 +77,7 @@ fn every_level_thread_count_and_band_height_gives_the_same_bytes() {
     }
 }
 
-/// Thousands of shapes with all that may come between them, drawn in two frames; the pixels of the first and of the last,
-/// and what was read in between.
+/// Thousands of shapes with all that may come between them, drawn in two frames: what each shows, and what is read in the middle of it.
 fn draw_long(settings: RenderSettings, heights: [u32; 3]) -> Vec<Vec<u8>> {
     let mut canvas = Canvas::with_settings(200, 150, settings).unwrap();
     let all = rastrum::IntRect::from_xywh(0, 0, 200, 150);
@@ -140,11 +139,14 @@ fn draw_long(settings: RenderSettings, heights: [u32; 3]) -> Vec<Vec<u8>> {
         canvas.set_shadow(None);
         shapes(&mut canvas, 1500);
         canvas.set_settings(settings.with_band_height(heights[2]));
-        // With a clip that goes on in the next frame.
+        // With a clip that goes on in the next frame, whose sections begin when it ends.
+        canvas.save();
         canvas.clip_path(&round, FillRule::NonZero, Antialias::Analytic);
         shapes(&mut canvas, 5);
         canvas.flush().unwrap();
         seen.push(canvas.read_pixels(all).unwrap().into_vec());
+        shapes(&mut canvas, 5);
+        canvas.restore();
     }
     seen
 }
