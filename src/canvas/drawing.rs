@@ -166,6 +166,9 @@ impl Canvas<'_> {
         if shadow > 0 {
             self.count_pictures(shadow);
         }
+        if self.sections.is_next(self.list.commands.len(), self.list.points.len()) {
+            self.end_section();
+        }
     }
 
     /// Records a draw under the current state.
@@ -194,9 +197,6 @@ impl Canvas<'_> {
             bounds,
             opaque,
         }));
-        if self.sections.is_next(self.list.commands.len(), self.list.points.len()) {
-            self.end_section();
-        }
     }
 
     /// Records the shadow of a draw: the same draw in a recording of its own, on a surface that holds what of it the

@@ -164,7 +164,7 @@ impl<'a> Canvas<'a> {
         };
         let result = self.renderer.render(&self.list, &mut target, self.settings);
         self.pictures = 0;
-        self.sections = Sections::default();
+        self.sections.restart();
         if self.renderer.end_sections() {
             let first = self.renderer.spare_list();
             let last = std::mem::replace(&mut self.list, first);

@@ -164,6 +164,27 @@ fn what_is_prepared_while_the_rest_is_recorded_gives_the_same_bytes() {
     }
 }
 
+/// A shadow is a recording within the recording: that an outline is long enough to be prepared at once is nothing to it.
+#[test]
+fn the_shadow_of_a_long_outline_is_the_same_on_every_thread_count() {
+    let comb: Vec<Point> = (0..20_000).map(|i| Point::new(20.0 + i as f32 / 160.0, [20.5, 110.25][i % 2])).collect();
+    let picture = |threads: usize| {
+        // A path of its own, as one that was drawn before is not copied.
+        let mut path = Path::new();
+        path.polygon(&comb);
+        let mut canvas = Canvas::with_settings(200, 150, RenderSettings::default().with_threads(threads)).unwrap();
+        canvas.clear(Color::WHITE);
+        canvas.set_shadow(Shadow { offset_x: 9.0, offset_y: 7.0, deviation: 2.0, color: Color::BLUE });
+        canvas.fill_path(&path, FillRule::EvenOdd, Color::RED);
+        canvas.stroke_path(&path, &Stroke::new(0.5), Color::BLACK);
+        canvas.into_pixmap()
+    };
+    let expected = picture(1);
+    // The shadow reaches below the comb, and nothing else does.
+    assert!(expected.pixel(90, 119).unwrap() != expected.pixel(5, 5).unwrap());
+    assert!(picture(2).data() == expected.data());
+}
+
 /// Fixtures ask one question each, so the one that fails says which step is to blame.
 #[cfg(all(feature = "svg", feature = "codec"))]
 #[test]
