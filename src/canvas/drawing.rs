@@ -7,6 +7,7 @@ use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, P
 use crate::filter::pixels;
 use crate::geom::{FixedRect, IntRect, Point, Rect, Transform};
 use crate::paint::PreparedPaint;
+use crate::path::stretch::stretches;
 use crate::path::{LineCap, LineJoin, Path, Radii, Stroke};
 use crate::style::{Antialias, FillRule};
 
@@ -351,8 +352,8 @@ impl Canvas<'_> {
         let bounds = self.device_bounds(path, reach)?;
         let outline = self.list.add_path(path);
         let transform = self.list.add_transform(transform);
-        let style = self.list.strokes.len() as u32;
-        self.list.strokes.push(stroke.clone());
+        let stretches = stretches(path, stroke, self.state.to_pixels());
+        let style = self.list.add_stroke(stroke, stretches);
         Some((Geometry::Stroke { outline, transform, style }, bounds))
     }
 

@@ -185,6 +185,18 @@ pub(crate) struct DisplayList {
     pub(crate) paints: Vec<PreparedPaint>,
     pub(crate) clips: Vec<ClipNode>,
     has_effects: bool,
+    /// The long ones among the strokes.
+    long_strokes: Vec<LongStroke>,
+}
+
+/// A stroke that is worth the work of several threads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LongStroke {
+    /// Which command it is, if it was not dropped for a reason of its own: that names the style, too.
+    pub(crate) command: u32,
+    pub(crate) style: u32,
+    /// How many stretches it has.
+    pub(crate) stretches: usize,
 }
 
 impl DisplayList {
@@ -202,6 +214,27 @@ impl DisplayList {
         self.paints.clear();
         self.clips.clear();
         self.has_effects = false;
+        self.long_strokes.clear();
+    }
+
+    /// Stores how a path is stroked that the next command will draw.
+    pub(crate) fn add_stroke(&mut self, stroke: &Stroke, stretches: usize) -> u32 {
+        let style = self.strokes.len() as u32;
+        self.strokes.push(stroke.clone());
+        if stretches > 1 {
+            self.long_strokes.push(LongStroke { command: self.commands.len() as u32, style, stretches });
+        }
+        style
+    }
+
+    /// The strokes that have several stretches, by command.
+    pub(crate) fn long_strokes(&self) -> impl Iterator<Item = LongStroke> {
+        // What is sampled is not a sum of areas, and `Exact` has to know where any edges cross.
+        self.long_strokes.iter().copied().filter(|long| {
+            let command = self.commands.get(long.command as usize);
+            matches!(command, Some(Command::Draw(Draw { geometry: Geometry::Stroke { style, .. }, antialias: Antialias::Analytic, .. }))
+                if *style == long.style)
+        })
     }
 
     /// Adds an effect as a command.

@@ -13,6 +13,7 @@ pub(crate) mod polygons;
 pub(crate) mod round_rect;
 mod shapes;
 mod steps;
+pub(crate) mod stretch;
 pub(crate) mod stroke;
 mod stroke_style;
 #[cfg(feature = "svg")]

@@ -2,6 +2,7 @@
 
 use super::flatten::PolygonSink;
 use super::steps::{Coefficients, Curve, Nib, Steps};
+use super::stretch::Cut;
 use super::{LineCap, LineJoin, Stroke};
 use crate::geom::{Point, Transform};
 use crate::num::level::{SimdLevel, dispatch};
@@ -204,6 +205,8 @@ pub(super) struct Outliner<'a, A: PointMap, K: PolygonSink> {
     steps: &'a mut Steps,
     level: SimdLevel,
     closed: bool,
+    /// Whether the subpath goes on from a cut.
+    is_cut: bool,
     /// Whether a polygon is begun in the sink.
     begun: bool,
     /// The subpath's first point.
@@ -235,6 +238,7 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
             steps,
             level,
             closed: false,
+            is_cut: false,
             begun: false,
             start: Point::ZERO,
             first: none,
@@ -247,11 +251,31 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
     /// Starts a subpath; [`Outliner::finish`] ends it.
     pub(super) fn begin(&mut self, p: Point, closed: bool) {
         self.closed = closed;
+        self.is_cut = false;
         self.begun = false;
         self.walking = false;
         self.start = p;
         self.at = p;
         self.right.clear();
+    }
+
+    /// Goes on with an open subpath where it is cut.
+    pub(super) fn begin_at(&mut self, cut: &Cut) {
+        self.begin(cut.at, false);
+        self.is_cut = true;
+        self.begun = true;
+        self.walking = true;
+        self.last = cut.last;
+        self.sink.begin(cut.left);
+        self.right.push(cut.right);
+    }
+
+    /// Where the pen is, the step that led there, and the last point of the right contour; `None` before the first join.
+    pub(super) fn place(&self) -> Option<(Point, (Point, f32), Point)> {
+        match &self.right[..] {
+            [_, .., right] => Some((self.at, self.last, *right)),
+            _ => None,
+        }
     }
 
     /// A straight line to `p`.
@@ -440,17 +464,31 @@ impl<'a, A: PointMap, K: PolygonSink> Outliner<'a, A, K> {
                 self.sink.end();
             }
         } else {
-            let (start, at) = (self.start, self.at);
-            self.cap(at, self.last.0, false);
-            for p in self.right.iter().rev() {
-                self.sink.line(*p);
-            }
-            if self.pen.cap == LineCap::Round {
-                self.half_circle(start, -self.first.0);
-            }
-            self.sink.end();
+            self.cap(self.at, self.last.0, false);
+            self.come_back();
         }
         self.begun = false;
+    }
+
+    /// Ends an open subpath where it is cut.
+    pub(super) fn finish_at(&mut self, cut: &Cut) {
+        if self.walking {
+            self.sink.line(cut.left);
+            self.right.push(cut.right);
+            self.come_back();
+        }
+        self.begun = false;
+    }
+
+    /// Writes the right contour backwards, and the cap of the start.
+    fn come_back(&mut self) {
+        for p in self.right.iter().rev() {
+            self.sink.line(*p);
+        }
+        if self.pen.cap == LineCap::Round && !self.is_cut {
+            self.half_circle(self.start, -self.first.0);
+        }
+        self.sink.end();
     }
 
     /// The mark of a subpath or dash without length: a disc, a square along `direction`, or nothing.

@@ -14,6 +14,7 @@ use super::far;
 use super::flatten::PolygonSink;
 use super::outline::{LONGEST_MITER, Outliner, Pen, PointMap, Unmapped};
 use super::steps::Steps;
+use super::stretch::Stretch;
 use super::{Segment, Stroke};
 use crate::geom::{Point, Rect, Transform};
 use crate::num::level::SimdLevel;
@@ -27,8 +28,8 @@ pub(crate) struct StrokeScratch {
     /// The level at which curves are looked at.
     pub(crate) level: SimdLevel,
     /// The right contour of the subpath in work, in device pixels.
-    right: Vec<Point>,
-    steps: Steps,
+    pub(super) right: Vec<Point>,
+    pub(super) steps: Steps,
     dash: DashScratch,
 }
 
@@ -57,11 +58,48 @@ pub(crate) fn stroke<K: PolygonSink>(
     scratch: &mut StrokeScratch,
     sink: &mut K,
 ) {
-    let Some(bounds) = Rect::from_points(points) else { return };
+    let Some(reach) = Rect::from_points(points).and_then(|bounds| reach(bounds, style, transform)) else { return };
+    let may_be_far = reach.in_device && f64::from(reach.extent) > far::FAR;
+    let job = Job { verbs, points, style, transform, visible, in_device: reach.in_device, may_be_far, stretch: None };
+    job.start(&reach, tolerance, scratch, sink);
+}
+
+/// As [`stroke`], of one of a path's [stretches](super::stretch::stretches).
+#[expect(clippy::too_many_arguments, reason = "as for the whole")]
+pub(crate) fn stroke_stretch<K: PolygonSink>(
+    verbs: &[Verb],
+    points: &[Point],
+    style: &Stroke,
+    transform: Transform,
+    tolerance: f32,
+    stretch: Stretch,
+    scratch: &mut StrokeScratch,
+    sink: &mut K,
+) {
+    // That all of the path lies near is known.
+    let Some(reach) = reach(Rect::default(), style, transform) else { return };
+    let (visible, in_device) = (Rect::default(), reach.in_device);
+    let job = Job { verbs, points, style, transform, visible, in_device, may_be_far: false, stretch: Some(stretch) };
+    job.start(&reach, tolerance, scratch, sink);
+}
+
+/// The pen, and how far it gets.
+pub(super) struct Reach {
+    /// By how much what is offset is stretched afterwards.
+    scale: f32,
+    /// The pen's radius in the space in which contours are offset.
+    radius: f32,
+    /// Whether that is device space.
+    in_device: bool,
+    /// A bound of the coordinates that the path has in either space.
+    pub(super) extent: f32,
+}
+
+/// How a path within `bounds` is stroked; `None` if nothing is drawn of it.
+pub(super) fn reach(bounds: Rect, style: &Stroke, transform: Transform) -> Option<Reach> {
     if !(style.width >= 0.0 && style.width.is_finite() && transform.is_finite()) {
-        return;
+        return None;
     }
-    let tolerance = if tolerance > 1e-3 { tolerance } else { 1e-3 };
     let hairline = style.width == 0.0;
     let similarity = similarity_scale(transform);
     let (scale, radius) = match similarity {
@@ -69,21 +107,10 @@ pub(crate) fn stroke<K: PolygonSink>(
         Some(scale) => (scale, style.width * 0.5 * scale),
         None => (transform.scale_range().0, style.width * 0.5),
     };
-    let reach = radius * LONGEST_MITER;
+    let margin = radius * LONGEST_MITER;
     let in_device = hairline || similarity.is_some();
-    let extent = farthest(bounds, transform, if in_device { 0.0 } else { reach });
-    if !(extent + reach < FARTHEST) {
-        return;
-    }
-    let may_be_far = in_device && f64::from(extent) > far::FAR;
-    let job = Job { verbs, points, style, transform, visible, in_device, may_be_far };
-    if in_device {
-        let pen = Pen::new(style, radius, tolerance, transform.map_direction(Point::new(1.0, 0.0)));
-        job.run(transform, Unmapped, &pen, scratch, sink);
-    } else if scale > 0.0 {
-        let pen = Pen::new(style, radius, tolerance / scale, Point::new(1.0, 0.0));
-        job.run(Unmapped, transform, &pen, scratch, sink);
-    }
+    let extent = farthest(bounds, transform, if in_device { 0.0 } else { margin });
+    (extent + margin < FARTHEST).then_some(Reach { scale, radius, in_device, extent })
 }
 
 /// An upper bound of the coordinates that points in `bounds`, moved by up to `reach`, are mapped to.
@@ -108,7 +135,7 @@ fn similarity_scale(t: Transform) -> Option<f32> {
 /// One call of [`stroke`] after its checks.
 pub(super) struct Job<'a> {
     verbs: &'a [Verb],
-    points: &'a [Point],
+    pub(super) points: &'a [Point],
     style: &'a Stroke,
     pub(super) transform: Transform,
     /// Device pixels that have to be right.
@@ -117,12 +144,28 @@ pub(super) struct Job<'a> {
     pub(super) in_device: bool,
     /// Whether device positions may be so far away that `f32` has lost their digits.
     may_be_far: bool,
+    /// What of it is stroked, if not all.
+    stretch: Option<Stretch>,
 }
 
 impl<'a> Job<'a> {
     /// The path's subpaths, in order.
     pub(super) fn subpaths(&self) -> Subpaths<'a> {
         Subpaths { verbs: self.verbs, points: self.points, start: Point::ZERO }
+    }
+
+    /// Chooses the space in which contours are offset, and strokes.
+    fn start<K: PolygonSink>(&self, reach: &Reach, tolerance: f32, scratch: &mut StrokeScratch, sink: &mut K) {
+        let Reach { scale, radius, .. } = *reach;
+        let (style, transform) = (self.style, self.transform);
+        let tolerance = if tolerance > 1e-3 { tolerance } else { 1e-3 };
+        if self.in_device {
+            let pen = Pen::new(style, radius, tolerance, transform.map_direction(Point::new(1.0, 0.0)));
+            self.run(transform, Unmapped, &pen, scratch, sink);
+        } else if scale > 0.0 {
+            let pen = Pen::new(style, radius, tolerance / scale, Point::new(1.0, 0.0));
+            self.run(Unmapped, transform, &pen, scratch, sink);
+        }
     }
 
     /// Strokes in the space that `before` maps to; `after` maps from there to device pixels.
@@ -134,6 +177,9 @@ impl<'a> Job<'a> {
         scratch: &mut StrokeScratch,
         sink: &mut K,
     ) {
+        if let Some(stretch) = self.stretch {
+            return self.run_stretch(stretch, (before, after), pen, scratch, sink);
+        }
         let mut outliner = Outliner::new(scratch.level, *pen, after, (&mut scratch.right, &mut scratch.steps), sink);
         if let Some(dash) = &self.style.dash
             && dash::dash(self, dash, before, &mut scratch.dash, &mut outliner)

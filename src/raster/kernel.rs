@@ -607,22 +607,37 @@ fn add_flat(cells: &mut Strip, start_x: i32, start_y: i32, end_x: i32, end_y: i3
 /// From so many edges on, the sums of their areas could leave the 32 bits of a cell.
 pub(crate) const CROWD: usize = (i32::MAX / FULL) as usize;
 
-/// Adds any number of edges, to be read by the nonzero rule: by the crowd, whose sums are set aside.
-#[inline(always)]
-pub(crate) fn add_crowd<S: Simd>(
+/// Adds any number of edges, to be read by the nonzero rule: by the crowd, whose sums are set aside where there are several.
+///
+/// Rare, and so not worth another copy of the kernel where shapes are accumulated.
+#[inline(never)]
+pub(crate) fn add_crowds<S: Simd>(
     simd: S,
     cells: &mut Accumulator,
-    edges: Edges<'_>,
+    edges: &mut dyn Iterator<Item = Edges<'_>>,
     top: i32,
     strips: usize,
     reaches: &[Reach],
 ) {
-    for crowd in edges.chunks(CROWD - 1) {
-        add_edges(simd, cells, crowd, top, strips, reaches);
-        cells.set_aside();
-    }
-    cells.bring_back(FillRule::NonZero);
-    cells.forget();
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let (mut crowd, mut is_aside) = (0, false);
+            for edges in edges.flat_map(|edges| edges.chunks(CROWD - 1)) {
+                if crowd + edges.len() >= CROWD {
+                    cells.set_aside();
+                    (crowd, is_aside) = (0, true);
+                }
+                crowd += edges.len();
+                add_edges(simd, cells, edges, top, strips, reaches);
+            }
+            if is_aside {
+                cells.set_aside();
+                cells.bring_back(FillRule::NonZero);
+                cells.forget();
+            }
+        },
+    );
 }
 
 #[cfg(test)]

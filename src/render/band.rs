@@ -8,7 +8,7 @@
 use fearless_simd::Simd;
 
 use super::clip_cache::{ClipCache, clip_for};
-use super::coverage::{Coverage, accumulate};
+use super::coverage::{Coverage, accumulate, accumulate_stretches};
 use super::hidden::{find_hidden, find_visible};
 use super::kept::Kept;
 use super::layer::{LayerBuffer, mask_layer, open_surface};
@@ -22,6 +22,7 @@ use crate::display_list::{Command, DisplayList, Draw, Geometry, LayerStart};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::level::{SimdLevel, dispatch};
 use crate::paint::PreparedPaint;
+use crate::path::stretch::Stretch;
 use crate::raster::bins::{Boundary, Content};
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
@@ -120,8 +121,14 @@ pub(super) fn render(frame: &Frame<'_>, mut target: Surface<'_>, scratch: &mut B
 fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, scratch: &mut BandScratch) {
     find_hidden(simd, frame, scratch);
     let (mut order, mut list) = (0, frame.list);
+    // Stretches before are painted.
+    let mut next_stretch = 0;
     for (piece_index, piece) in frame.pieces.iter().enumerate() {
         let Some(band) = piece.chunk.band(frame.index) else { continue };
+        if piece_index < next_stretch {
+            order += band.items.len() as u32;
+            continue;
+        }
         let frame = &frame.of(piece);
         if !std::ptr::eq(frame.list, list) {
             // Clips are named within a recording.
@@ -151,8 +158,12 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                     let Some(paint) = frame.list.paints.get(draw.paint as usize) else { continue };
                     if scratch.kept.holds(place) {
                         paint_kept(simd, frame, &mut scratch.kept, Look::new(draw, paint, None), target);
+                    } else if let Some(Stretch { index, count }) = piece.chunk.stretch() {
+                        next_stretch = piece_index + (count - index);
+                        let stretches = frame.pieces.get(piece_index..next_stretch).unwrap_or(&[]);
+                        paint_draw(simd, frame, target, scratch, draw, paint, boundary, stretches);
                     } else {
-                        paint_draw(simd, frame, target, scratch, draw, paint, boundary);
+                        paint_draw(simd, frame, target, scratch, draw, paint, boundary, &[]);
                     }
                 }
                 Command::Clip(id) => scratch.clips.edges.push((id.0, piece_index, *item)),
@@ -188,7 +199,7 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                         bounds: picture.bounds,
                         opaque: picture.paint.is_opaque(),
                     };
-                    paint_draw(simd, frame, target, scratch, &draw, &picture.paint, boundary);
+                    paint_draw(simd, frame, target, scratch, &draw, &picture.paint, boundary, &[]);
                 }
             }
         }
@@ -201,8 +212,10 @@ fn covers(frame: &Frame<'_>, target: &Surface<'_>, rect: FixedRect) -> bool {
     rect.left <= area.left && rect.top <= area.top && rect.right >= area.right && rect.bottom >= area.bottom
 }
 
-/// Draws one shape onto the open layer, or onto the target.
+/// Draws one shape onto the open layer, or onto the target. It has the edges of `boundary` or, if it is a long stroke, those of all its
+/// `stretches`.
 #[inline(never)]
+#[expect(clippy::too_many_arguments, reason = "a draw's facts, from the only place that knows them")]
 fn paint_draw<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
@@ -211,14 +224,16 @@ fn paint_draw<S: Simd>(
     draw: &Draw,
     paint: &PreparedPaint,
     boundary: Boundary<'_>,
+    stretches: &[Piece<'_>],
 ) {
     simd.vectorize(
         #[inline(always)]
-        || paint_draw_inner(simd, frame, target, scratch, draw, paint, boundary),
+        || paint_draw_inner(simd, frame, target, scratch, draw, paint, boundary, stretches),
     )
 }
 
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "as for paint_draw")]
 fn paint_draw_inner<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
@@ -227,6 +242,7 @@ fn paint_draw_inner<S: Simd>(
     draw: &Draw,
     paint: &PreparedPaint,
     boundary: Boundary<'_>,
+    stretches: &[Piece<'_>],
 ) {
     if matches!(paint, PreparedPaint::Nothing) && draw.blend_mode == BlendMode::SourceOver {
         return;
@@ -236,7 +252,11 @@ fn paint_draw_inner<S: Simd>(
     if !find_visible(frame, scratch, draw.bounds) {
         return;
     }
-    let coverage = accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, draw.bounds, boundary);
+    let coverage = if stretches.is_empty() {
+        accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, draw.bounds, boundary)
+    } else {
+        accumulate_stretches(simd, frame, scratch, stretches)
+    };
     let BandScratch { cells, layers, clips, occlusion, visible, .. } = scratch;
     let surface = &mut open_surface(frame, target, layers);
     let clip = clips.current(draw.clip);

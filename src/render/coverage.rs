@@ -2,6 +2,7 @@
 
 use fearless_simd::Simd;
 
+use super::Piece;
 use super::band::{BandScratch, Frame};
 use super::occlusion::reach;
 use super::prepare::is_exact;
@@ -132,7 +133,7 @@ fn accumulate_inner<S: Simd>(
         Antialias::Analytic | Antialias::Exact => {
             // Sums by the even-odd rule may wrap around: what is lost is even.
             if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
-                kernel::add_crowd(simd, cells, edges, top, frame.strips, reaches);
+                kernel::add_crowds(simd, cells, &mut std::iter::once(edges), top, frame.strips, reaches);
             } else {
                 add_edges(simd, cells, edges, top, frame.strips, reaches);
             }
@@ -149,6 +150,28 @@ fn accumulate_inner<S: Simd>(
         }
     }
     Coverage::Cells(CoverageRule::Samples(u16::from(grid) * u16::from(grid)))
+}
+
+/// Brings a stroke into the cells whose edges are those of `stretches`, and says how to read them.
+#[inline(never)]
+pub(super) fn accumulate_stretches<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    scratch: &mut BandScratch,
+    stretches: &[Piece<'_>],
+) -> Coverage {
+    let BandScratch { cells, reaches, visible, .. } = scratch;
+    reaches.clear();
+    reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
+    let mut edges = stretches.iter().filter_map(|stretch| {
+        let band = stretch.chunk.band(frame.index)?;
+        match stretch.chunk.boundary(band, *band.items.first()?) {
+            Boundary::Edges(edges) => Some(edges),
+            Boundary::RoundRect(_) => None,
+        }
+    });
+    kernel::add_crowds(simd, cells, &mut edges, frame.top << fixed::SHIFT, frame.strips, reaches);
+    Coverage::Cells(CoverageRule::NonZero)
 }
 
 /// Edges side by side, for steps that look at them more than once.

@@ -21,13 +21,12 @@ mod settings;
 mod surface;
 
 use std::collections::VecDeque;
-use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
 pub(crate) use parts::Parts;
 pub use settings::RenderSettings;
 
-use prepare::Chunk;
+use prepare::{Chunk, Slice};
 use section::Section;
 
 use crate::display_list::DisplayList;
@@ -119,17 +118,17 @@ impl Renderer {
     /// Lists the edges of the shapes of the sections and of `list` by band of `frame`, and says in how many chunks those of `list`
     /// are.
     fn prepare(&mut self, list: &DisplayList, plan: &plan::Plan, frame: IntRect, settings: RenderSettings) -> usize {
-        let count = prepare::chunk_count(list.commands.len(), settings.threads);
+        let slices = prepare::slices(list, prepare::chunk_count(list.commands.len(), settings.threads));
+        let count = slices.len();
         self.chunks.resize_with(count.max(self.chunks.len()), Chunk::default);
-        let ranges = prepare::split(list.commands.len(), count);
         let sections = self.sections.iter();
         let sections = sections.flat_map(|section| (0..section.parts()).map(move |part| Job::Section(section, part)));
-        let chunks = self.chunks.iter_mut().zip(ranges).map(|(chunk, range)| Job::Chunk(chunk, range));
+        let chunks = self.chunks.iter_mut().zip(&slices).map(|(chunk, slice)| Job::Chunk(chunk, slice));
         crate::pool::for_each(settings.threads, sections.chain(chunks).collect(), |job| match job {
             Job::Section(section, part) => {
                 section.prepare_part(part, settings);
             }
-            Job::Chunk(chunk, range) => chunk.prepare(list, plan, range, frame, settings),
+            Job::Chunk(chunk, slice) => chunk.prepare(list, plan, slice, frame, settings),
         });
         count
     }
@@ -168,7 +167,7 @@ impl Renderer {
 enum Job<'a> {
     /// A part of a section.
     Section(&'a Section, usize),
-    Chunk(&'a mut Chunk, Range<usize>),
+    Chunk(&'a mut Chunk, &'a Slice),
 }
 
 /// The working memory that this thread used last, which its core's cache may hold, or another.

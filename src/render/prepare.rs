@@ -14,7 +14,8 @@ use crate::paint::PreparedPaint;
 use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
 use crate::path::round_rect::{may_be_round_rect, round_rect};
-use crate::path::stroke::{StrokeScratch, stroke};
+use crate::path::stretch::Stretch;
+use crate::path::stroke::{StrokeScratch, stroke, stroke_stretch};
 use crate::raster::bins::{BandItem, BandList, Boundary, EdgeBins, Role, extent};
 use crate::raster::round_rect::RoundRect;
 use crate::style::{Antialias, FillRule};
@@ -28,6 +29,16 @@ pub(crate) struct Chunk {
     mapped: Vec<Point>,
     polygons: Polygons,
     stroke: StrokeScratch,
+    /// If it holds but a stretch of one command: which.
+    stretch: Option<Stretch>,
+}
+
+/// What of a recording is prepared in one go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Slice {
+    commands: Range<usize>,
+    /// Not all of the one command, but a stretch of it.
+    stretch: Option<Stretch>,
 }
 
 /// How many chunks to prepare `commands` in: several per thread, so that a costly one does not hold
@@ -36,9 +47,28 @@ pub(super) fn chunk_count(commands: usize, threads: usize) -> usize {
     if threads <= 1 { 1 } else { commands.min(8 * threads).max(1) }
 }
 
-/// `commands` cut into `chunks` ranges of nearly equal length.
-pub(super) fn split(commands: usize, chunks: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..chunks).map(move |chunk| commands * chunk / chunks..commands * (chunk + 1) / chunks)
+/// A recording cut into `chunks` slices of nearly as many commands, and those further where strokes are long. The stretches of one
+/// follow each other.
+pub(super) fn slices(list: &DisplayList, chunks: usize) -> Vec<Slice> {
+    let commands = list.commands.len();
+    let mut slices = Vec::with_capacity(chunks);
+    let mut long_strokes = list.long_strokes().peekable();
+    for chunk in 0..chunks {
+        let (mut start, end) = (commands * chunk / chunks, commands * (chunk + 1) / chunks);
+        while let Some(long) = long_strokes.next_if(|long| (long.command as usize) < end) {
+            let (command, count) = (long.command as usize, long.stretches);
+            if start < command {
+                slices.push(Slice { commands: start..command, stretch: None });
+            }
+            let stretch = |index| Slice { commands: command..command + 1, stretch: Some(Stretch { index, count }) };
+            slices.extend((0..count).map(stretch));
+            start = command + 1;
+        }
+        if start < end {
+            slices.push(Slice { commands: start..end, stretch: None });
+        }
+    }
+    slices
 }
 
 impl Chunk {
@@ -53,19 +83,25 @@ impl Chunk {
         self.bins.boundary(band, item)
     }
 
-    /// Lists the edges of `range` of the list's commands for the bands of `frame`. `settings` are resolved.
+    /// If it holds but a stretch of one command: which.
+    pub(super) fn stretch(&self) -> Option<Stretch> {
+        self.stretch
+    }
+
+    /// Lists the edges of a slice of the list for the bands of `frame`. `settings` are resolved.
     pub(super) fn prepare(
         &mut self,
         list: &DisplayList,
         plan: &Plan,
-        range: Range<usize>,
+        slice: &Slice,
         frame: IntRect,
         settings: RenderSettings,
     ) {
         let RenderSettings { level, band_height, .. } = settings;
         self.bins.reset(frame.height().div_ceil(band_height) as usize, band_height.trailing_zeros());
         self.stroke.level = level;
-        dispatch!(level, simd => self.prepare_with(simd, list, plan, range, frame));
+        self.stretch = slice.stretch;
+        dispatch!(level, simd => self.prepare_with(simd, list, plan, slice.commands.clone(), frame));
     }
 
     #[inline(always)]
@@ -149,9 +185,13 @@ impl Chunk {
             Geometry::Stroke { outline, transform, style } => {
                 let (verbs, points) = list.outline(*outline);
                 if let Some(style) = list.strokes.get(*style as usize) {
-                    let visible = bounds.to_rect();
                     let transform = list.transform(*transform);
-                    stroke(verbs, points, style, transform, TOLERANCE, visible, &mut self.stroke, &mut self.polygons);
+                    let (scratch, polygons) = (&mut self.stroke, &mut self.polygons);
+                    if let Some(stretch) = self.stretch {
+                        stroke_stretch(verbs, points, style, transform, TOLERANCE, stretch, scratch, polygons);
+                    } else {
+                        stroke(verbs, points, style, transform, TOLERANCE, bounds.to_rect(), scratch, polygons);
+                    }
                 }
             }
             // What has no slanted edges is covered without a list of them, unless it is sampled.
@@ -211,4 +251,54 @@ fn rectangle<K: PolygonSink>(rect: Rect, sink: &mut K) {
     sink.line(c);
     sink.line(d);
     sink.end();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::Transform;
+    use crate::path::{Path, Stroke};
+
+    /// Lines and, where `long` says so, strokes of so many stretches. The last of them is not there in the end.
+    fn list(commands: usize, long: &[(usize, usize)]) -> DisplayList {
+        let mut list = DisplayList::default();
+        let mut path = Path::new();
+        path.move_to((1.0, 2.0)).line_to((30.0, 40.0));
+        list.paints.push(PreparedPaint::Solid([9, 9, 9, 255]));
+        for index in 0..commands {
+            let stretches = long.iter().find(|(command, _)| *command == index).map_or(1, |(_, stretches)| *stretches);
+            let (outline, transform) = (list.add_path(&path), list.add_transform(Transform::IDENTITY));
+            let style = list.add_stroke(&Stroke::new(1.0), stretches);
+            list.commands.push(Command::Draw(Draw {
+                geometry: Geometry::Stroke { outline, transform, style },
+                paint: 0,
+                antialias: if stretches == 7 { Antialias::Exact } else { Antialias::Analytic },
+                blend_mode: BlendMode::SourceOver,
+                clip: ClipId::NONE,
+                bounds: IntRect::from_xywh(0, 0, 50, 50),
+                opaque: true,
+            }));
+        }
+        list.add_stroke(&Stroke::new(1.0), 3);
+        list
+    }
+
+    fn of(list: &DisplayList, chunks: usize) -> Vec<(Range<usize>, usize)> {
+        let slices = slices(list, chunks).into_iter();
+        slices
+            .map(|slice| (slice.commands, slice.stretch.map_or(0, |stretch| 10 * stretch.index + stretch.count)))
+            .collect()
+    }
+
+    #[test]
+    fn slices_are_chunks_but_for_long_strokes() {
+        assert_eq!(of(&list(10, &[]), 3), [(0..3, 0), (3..6, 0), (6..10, 0)]);
+        assert_eq!(of(&list(10, &[(4, 2)]), 1), [(0..4, 0), (4..5, 2), (4..5, 12), (5..10, 0)]);
+        assert_eq!(of(&list(2, &[(0, 2), (1, 2)]), 1), [(0..1, 2), (0..1, 12), (1..2, 2), (1..2, 12)]);
+        let at_an_end = of(&list(4, &[(1, 2)]), 2);
+        assert_eq!(at_an_end, [(0..1, 0), (1..2, 2), (1..2, 12), (2..4, 0)]);
+        // `Exact` takes it as a whole.
+        assert_eq!(of(&list(3, &[(1, 7)]), 1), [(0..3, 0)]);
+        assert_eq!(of(&DisplayList::default(), 1), []);
+    }
 }

@@ -4,12 +4,11 @@
 //! that comes in time prepares it, and what none has begun when the picture is asked for is prepared with the rest.
 
 use std::collections::VecDeque;
-use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::RenderSettings;
 use super::plan::Plan;
-use super::prepare::{Chunk, split};
+use super::prepare::{Chunk, Slice, slices};
 use crate::display_list::DisplayList;
 use crate::geom::IntRect;
 
@@ -31,7 +30,7 @@ pub(super) struct Section {
 /// Some of a section's commands, prepared by one thread.
 #[derive(Debug)]
 struct Part {
-    commands: Range<usize>,
+    slice: Slice,
     edges: Mutex<Edges>,
 }
 
@@ -47,9 +46,9 @@ impl Section {
     /// A section of a recording for `frame`; its edges will use the memory of `spare` chunks.
     pub(super) fn new(list: DisplayList, frame: IntRect, spare: &mut VecDeque<Chunk>) -> Self {
         let count = (list.work() / WORK).clamp(1, MOST_PARTS);
-        let parts = split(list.commands.len(), count).map(|commands| {
+        let parts = slices(&list, count).into_iter().map(|slice| {
             let chunk = spare.pop_front().unwrap_or_default();
-            Part { commands, edges: Mutex::new(Edges { chunk, band_height: None }) }
+            Part { slice, edges: Mutex::new(Edges { chunk, band_height: None }) }
         });
         let parts = parts.collect();
         Self { list, frame, parts }
@@ -90,7 +89,7 @@ impl Section {
             return false;
         }
         // Only effects are planned.
-        edges.chunk.prepare(&self.list, &Plan::default(), part.commands.clone(), self.frame, settings);
+        edges.chunk.prepare(&self.list, &Plan::default(), &part.slice, self.frame, settings);
         edges.band_height = Some(settings.band_height);
         true
     }

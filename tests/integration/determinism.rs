@@ -185,6 +185,76 @@ fn the_shadow_of_a_long_outline_is_the_same_on_every_thread_count() {
     assert!(picture(2).data() == expected.data());
 }
 
+/// A long polyline is stroked by several threads. With another subpath, of which nothing is seen, it is stroked in one go.
+#[test]
+fn a_long_polyline_is_drawn_as_one_that_cannot_be_shared() {
+    let mut seed = 5_u32;
+    let mut random = |limit: f32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) as f32 / 16_777_216.0 * limit
+    };
+    // It leaves the canvas on all sides, and has more edges in a band than a sum of areas holds.
+    let mut at = Point::new(100.0, 75.0);
+    let mut step = || {
+        at = Point::new(
+            (at.x + random(60.0) - 30.0).clamp(-30.0, 230.0),
+            (at.y + random(60.0) - 30.0).clamp(-30.0, 180.0),
+        );
+        at
+    };
+    let points: Vec<Point> = (0..50_000).map(|_| step()).collect();
+    let near: Vec<Point> = (0..20_000).map(|i| Point::new(20.0 + i as f32 / 150.0, 60.0 + random(20.0))).collect();
+    let picture = |settings: RenderSettings, is_shared: bool, is_drawn_again: bool| {
+        let path = |points: &[Point]| {
+            let mut path = Path::new();
+            path.polyline(points);
+            if !is_shared {
+                path.move_to(points[0]).line_to(points[0]);
+            }
+            path
+        };
+        let (long, near) = (path(&points), path(&near));
+        let mut canvas = Canvas::with_settings(200, 150, settings).unwrap();
+        for _ in 0..=usize::from(is_drawn_again) {
+            canvas.clear(Color::WHITE);
+            canvas.fill_circle((60.0, 60.0), 30.0, Color::from_rgba(0.2, 0.7, 0.3, 0.8));
+            canvas.save();
+            let mut round = Path::new();
+            round.circle((120.0, 80.0), 60.0);
+            canvas.clip_path(&round, FillRule::NonZero, Antialias::Analytic);
+            canvas.stroke_path(&long, &Stroke::new(0.02), Color::from_rgba(0.8, 0.1, 0.1, 0.7));
+            canvas.restore();
+            canvas.push_layer(0.7, BlendMode::Multiply);
+            canvas.set_shadow(Shadow { offset_x: 5.0, offset_y: 4.0, deviation: 2.0, color: Color::BLACK });
+            canvas.stroke_path(&near, &Stroke::new(1.5).with_join(LineJoin::Round), Color::BLUE);
+            canvas.pop_layer();
+            canvas.fill_rect(Rect::from_xywh(90.0, 60.0, 40.0, 40.0), Color::GREEN);
+            canvas.stroke_path(&near, &Stroke::new(0.4), Color::BLACK);
+            // What cannot be seen is no command.
+            canvas.stroke_path(&near, &Stroke::new(0.4), Color::TRANSPARENT);
+            canvas.stroke_path(&near, &Stroke::new(0.3), Paint::new(Color::RED).with_antialias(Antialias::None));
+            canvas.flush().unwrap();
+        }
+        canvas.into_pixmap().into_vec()
+    };
+    let settings = RenderSettings::default().with_threads(1);
+    let expected = picture(settings, false, false);
+    let best = SimdLevel::best();
+    for (threads, band_height, level, is_drawn_again) in [
+        (1, 32, best, false),
+        (2, 32, best, true),
+        (2, 8, best, false),
+        (5, 64, best, true),
+        (2, 32, SimdLevel::Scalar, false),
+    ] {
+        let settings = settings.with_threads(threads).with_band_height(band_height).with_level(level);
+        assert!(
+            picture(settings, true, is_drawn_again) == expected,
+            "{threads} threads, bands of {band_height} rows, {level:?}, {is_drawn_again}"
+        );
+    }
+}
+
 /// Fixtures ask one question each, so the one that fails says which step is to blame.
 #[cfg(all(feature = "svg", feature = "codec"))]
 #[test]
