@@ -1,6 +1,8 @@
 //! Outlines: path data that is none, what other renderers panic on, crowds of edges.
 
-use rastrum::{Antialias, Canvas, Color, FillRule, LineCap, Paint, Path, Rect, RenderSettings, SimdLevel, Stroke};
+use rastrum::{
+    Antialias, Canvas, Color, FillRule, LineCap, Paint, Path, Point, Rect, RenderSettings, SimdLevel, Stroke,
+};
 
 use super::{draws_everywhere, draws_like, draws_nothing, survives};
 use crate::oracle::Random;
@@ -118,9 +120,10 @@ fn tens_of_thousands_of_windings() {
 
 #[test]
 fn crowds_of_edges_look_the_same_at_every_setting() {
-    // Wound around thousands of times in some strips, once in others: too often to find out where so many edges cross.
+    // Wound around so often in some strips that the sum of areas in 32 bits, of which a pixel has 17, is nothing; once in others. It is
+    // too often to find out where so many edges cross.
     for (antialias, windings, is_resolved) in
-        [(Antialias::Analytic, 17_000, false), (Antialias::Exact, 17_000, false), (Antialias::Exact, 50, true)]
+        [(Antialias::Analytic, 32_768, false), (Antialias::Exact, 32_768, false), (Antialias::Exact, 50, true)]
     {
         let mut path = Path::new();
         path.circle((30.0, 40.0), 25.0);
@@ -149,5 +152,34 @@ fn crowds_of_edges_look_the_same_at_every_setting() {
         // In the circle alone both are the same.
         assert_eq!(plain.pixel(30, 14).unwrap()[3], 255);
         assert_eq!(plain.pixel(2, 78).unwrap()[3], 0);
+    }
+}
+
+#[test]
+fn a_polyline_around_the_same_corners_thousands_of_times_is_that_around_them_once() {
+    // Long enough to be stroked stretch by stretch, none of which is a crowd.
+    let around = |times: usize| {
+        let corners = [(10.3, 8.6), (50.1, 8.6), (50.1, 60.2), (10.3, 60.2)].map(Point::from);
+        let mut path = Path::new();
+        path.polyline(&corners.repeat(times));
+        path
+    };
+    // In 32 bits, of which a pixel has 17, the sum of so many is nothing.
+    let (once, often) = (around(2), around(32_768));
+    let stroke = Stroke::new(6.0);
+    let draw = |path: &Path, settings: RenderSettings| {
+        let mut canvas = Canvas::with_settings(64, 80, settings).unwrap();
+        canvas.stroke_path(path, &stroke, Color::BLACK);
+        canvas.into_pixmap()
+    };
+    let plain = draw(&once, RenderSettings::default());
+    assert!(plain.data().iter().skip(3).step_by(4).filter(|alpha| **alpha == 255).count() > 800);
+    for level in SimdLevel::available() {
+        for (threads, band_height) in [(1, 32), (2, 8), (2, 128)] {
+            let drawn = draw(&often, RenderSettings { level, threads, band_height });
+            // Where the side of one is within a pixel, areas add up to more than is covered.
+            let differ = plain.data().iter().zip(drawn.data()).filter(|(a, b)| matches!(a, 0 | 255) && a != b).count();
+            assert_eq!(differ, 0, "{level:?}, {threads} threads, bands of {band_height} rows");
+        }
     }
 }
