@@ -20,7 +20,8 @@ use crate::error::{Error, Result};
 use crate::surface::block::{MaskBlock, PixelBlock};
 pub(crate) use layer::{multiply_block_by_mask, scale_mask_row, scale_mask_row_by};
 pub(crate) use over::{
-    OpaqueRow, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row, over_solid_full, over_solid_row,
+    OpaqueRow, SolidRun, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row, over_solid_full,
+    over_solid_row,
 };
 use porter_duff::{Operands, composite};
 use separable::{composite_components, composite_planes};

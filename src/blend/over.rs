@@ -15,14 +15,15 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{u8x32, u16x16, u32x8};
 
-use super::words::{Words, duplicate_odd, mask_words, min_u8, mix, quotient_255};
+use super::words::{Words, duplicate_odd, min_u8, mix, quotient_255};
+use crate::num::lanes::doubled_words;
 
 /// `color` (premultiplied) over 16 pixels by `mask`. Components above the colour's alpha are lowered to it.
 #[inline(always)]
 pub(crate) fn over_solid_row<S: Simd>(simd: S, row: &mut [u8; 64], color: [u8; 4], mask: &[u8; 16]) {
     let source = solid(simd, color);
     let alpha = u16x16::splat(simd, u16::from(color[3]));
-    let masks = mask_words(simd, mask);
+    let masks = doubled_words(simd, mask);
     over_halves(
         simd,
         row,
@@ -60,7 +61,7 @@ impl<S: Simd> OpaqueRow<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, [r, g, b, _]: [u8; 4], mask: &[u8; 16]) -> Self {
         let source = solid(simd, [r, g, b, 255]);
-        let [low, high] = mask_words(simd, mask);
+        let [low, high] = doubled_words(simd, mask);
         let (low_added, high_added) = (source.times(low), source.times(high));
         Self { added: [low_added, high_added], rest: [low ^ 255, high ^ 255] }
     }
@@ -103,12 +104,43 @@ pub(crate) fn over_solid_full<S: Simd>(simd: S, row: &mut [u8; 64], color: [u8; 
     );
 }
 
+/// One colour, made ready to be put over runs of eight pixels by their coverage: to the same bytes as [`over_solid_row`].
+#[derive(Clone, Copy)]
+pub(crate) struct SolidRun<S: Simd> {
+    source: Words<S>,
+    alpha: u16x16<S>,
+}
+
+impl<S: Simd> SolidRun<S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, color: [u8; 4]) -> Self {
+        Self { source: solid(simd, color), alpha: u16x16::splat(simd, u16::from(color[3])) }
+    }
+
+    /// Puts it over eight pixels; `coverage` is in both lanes of its pixel. `OPAQUE` says that the colour is.
+    #[inline(always)]
+    pub(crate) fn over<const OPAQUE: bool>(&self, simd: S, pixels: &mut [u8; 32], coverage: u16x16<S>) {
+        let below = Words::from_bytes(u8x32::load_array_ref(simd, pixels));
+        let added = self.source.times(coverage);
+        let rest = if OPAQUE {
+            coverage ^ 255
+        } else {
+            quotient_255(u16x16::splat(simd, 255 * 255 + 128) - self.alpha * coverage)
+        };
+        let words = Words {
+            even: quotient_255(below.even * rest + added.even),
+            odd: quotient_255(below.odd * rest + added.odd),
+        };
+        words.to_bytes().store_array(pixels);
+    }
+}
+
 /// 16 premultiplied pixels over 16 others by `mask`. Where a source component exceeds its alpha, the
 /// sum saturates at 255.
 #[inline(always)]
 pub(crate) fn over_pixels_row<S: Simd>(simd: S, dst: &mut [u8; 64], src: &[u8; 64], mask: &[u8; 16]) {
     let src = src.as_chunks::<32>().0;
-    let masks = mask_words(simd, mask);
+    let masks = doubled_words(simd, mask);
     over_halves(
         simd,
         dst,
@@ -153,7 +185,7 @@ pub(crate) fn over_pixels_full<S: Simd>(simd: S, dst: &mut [u8; 64], src: &[u8; 
 #[inline(always)]
 pub(crate) fn mix_pixels_row<S: Simd>(simd: S, dst: &mut [u8; 64], src: &[u8; 64], mask: &[u8; 16]) {
     let src = src.as_chunks::<32>().0;
-    let masks = mask_words(simd, mask);
+    let masks = doubled_words(simd, mask);
     over_halves(
         simd,
         dst,

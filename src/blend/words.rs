@@ -5,9 +5,9 @@
 //! products of two components fit.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, u8x16, u8x32, u16x8, u16x16};
+use fearless_simd::{u8x32, u16x16};
 
-use crate::num::lanes::high_product;
+use crate::num::lanes::{doubled_words, high_product};
 use crate::surface::block::{MaskBlock, PixelBlock};
 
 /// Eight RGBA pixels: component k of pixel i is in lane 2i + ⌊k / 2⌋ of `even` or `odd`.
@@ -64,49 +64,6 @@ pub(super) fn div255<S: Simd>(v: u16x16<S>) -> u16x16<S> {
     quotient_255(v + 128)
 }
 
-/// Sixteen mask bytes as lanes for the two halves of a row: each byte in both lanes of its pixel.
-#[inline(always)]
-pub(super) fn mask_words<S: Simd>(simd: S, mask: &[u8; 16]) -> [u16x16<S>; 2] {
-    let mask = u8x16::load_array_ref(simd, mask);
-    if has_byte_shuffle(simd) {
-        // Indices 16 and up read whatever the level gives, hence the `& 255`, which costs nothing:
-        // index 255 is zero at AVX2, so the compiler knows. One load and one shuffle a half.
-        let both = u8x32::block_splat(mask);
-        let low = u8x32::load_array(simd, const { pixel_indices(0) });
-        let high = u8x32::load_array(simd, const { pixel_indices(8) });
-        let low: u16x16<S> = both.swizzle_dyn_within_blocks(low).bitcast();
-        let high: u16x16<S> = both.swizzle_dyn_within_blocks(high).bitcast();
-        [low & 255, high & 255]
-    } else {
-        let zero = u8x16::splat(simd, 0);
-        let low: u16x8<S> = mask.zip_low(zero).bitcast();
-        let high: u16x8<S> = mask.zip_high(zero).bitcast();
-        [low.zip_low(low).combine(low.zip_high(low)), high.zip_low(high).combine(high.zip_high(high))]
-    }
-}
-
-/// Whether the level moves bytes by a vector of indices in one instruction. Known when compiled.
-#[inline(always)]
-fn has_byte_shuffle<S: Simd>(simd: S) -> bool {
-    match simd.level() {
-        Level::Fallback(_) => false,
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse2(_) => false,
-        _ => true,
-    }
-}
-
-/// Shuffle indices that put byte `first + i` into the low byte of both lanes of pixel i.
-const fn pixel_indices(first: u8) -> [u8; 32] {
-    let mut indices = [255; 32];
-    let mut lane = 0;
-    while lane < 16 {
-        indices[2 * lane] = first + (lane / 2) as u8;
-        lane += 1;
-    }
-    indices
-}
-
 /// (from · (255 − mask) + to · mask) / 255, rounded once. Mask 0 gives `from`, 255 gives `to`.
 #[inline(always)]
 pub(super) fn mix<S: Simd>(from: Words<S>, to: Words<S>, mask: u16x16<S>) -> Words<S> {
@@ -145,7 +102,7 @@ pub(super) fn mix_block<S: Simd>(
         #[inline(always)]
         || {
             for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
-                let masks = mask_words(simd, mask);
+                let masks = doubled_words(simd, mask);
                 let halves = dst.as_chunks_mut::<32>().0.iter_mut().zip(src.as_chunks::<32>().0);
                 for ((dst, src), mask) in halves.zip(masks) {
                     let below = u8x32::load_array_ref(simd, dst);
@@ -183,7 +140,7 @@ mod tests {
                 let words = Words::from_bytes(u8x32::load_array_ref(simd, &bytes));
                 assert_eq!(words.to_bytes().to_array(), bytes, "{level:?}");
                 let alpha = words.alpha().to_array();
-                let masks = mask_words(simd, &mask).map(|half| half.to_array());
+                let masks = doubled_words(simd, &mask).map(|half| half.to_array());
                 for pixel in 0..8 {
                     let expected = u16::from(bytes[4 * pixel + 3]);
                     assert_eq!(alpha[2 * pixel..2 * pixel + 2], [expected; 2], "{level:?}");

@@ -1,7 +1,7 @@
 //! Small pieces of lane arithmetic that every level rounds alike.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8, u16x16};
+use fearless_simd::{Level, f32x8, i32x8, u8x16, u8x32, u16x8, u16x16};
 
 /// An array of `f` of each index. `array::from_fn` and `array::map` are not always inlined, and vectors in them are then reckoned
 /// without the caller's SIMD level: every operation becomes a call.
@@ -95,6 +95,49 @@ pub(crate) fn high_product<S: Simd>(v: u16x16<S>, factor: u16) -> u16x16<S> {
     let (low, high) = v.widening_mul(factor);
     let (low, high): (u16x16<S>, u16x16<S>) = (low.bitcast(), high.bitcast());
     low.unzip_high(high)
+}
+
+/// Sixteen bytes as words, each twice: the coverage of the two halves of a block's row, in both lanes of its pixel.
+#[inline(always)]
+pub(crate) fn doubled_words<S: Simd>(simd: S, bytes: &[u8; 16]) -> [u16x16<S>; 2] {
+    let bytes = u8x16::load_array_ref(simd, bytes);
+    if has_byte_shuffle(simd) {
+        // Indices 16 and up read whatever the level gives, hence the `& 255`, which costs nothing:
+        // index 255 is zero at AVX2, so the compiler knows. One load and one shuffle a half.
+        let both = u8x32::block_splat(bytes);
+        let low = u8x32::load_array(simd, const { pixel_indices(0) });
+        let high = u8x32::load_array(simd, const { pixel_indices(8) });
+        let low: u16x16<S> = both.swizzle_dyn_within_blocks(low).bitcast();
+        let high: u16x16<S> = both.swizzle_dyn_within_blocks(high).bitcast();
+        [low & 255, high & 255]
+    } else {
+        let zero = u8x16::splat(simd, 0);
+        let low: u16x8<S> = bytes.zip_low(zero).bitcast();
+        let high: u16x8<S> = bytes.zip_high(zero).bitcast();
+        [low.zip_low(low).combine(low.zip_high(low)), high.zip_low(high).combine(high.zip_high(high))]
+    }
+}
+
+/// Whether the level moves bytes by a vector of indices in one instruction. Known when compiled.
+#[inline(always)]
+fn has_byte_shuffle<S: Simd>(simd: S) -> bool {
+    match simd.level() {
+        Level::Fallback(_) => false,
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse2(_) => false,
+        _ => true,
+    }
+}
+
+/// Shuffle indices that put byte `first + i` into the low byte of both lanes of pixel i.
+const fn pixel_indices(first: u8) -> [u8; 32] {
+    let mut indices = [255; 32];
+    let mut lane = 0;
+    while lane < 16 {
+        indices[2 * lane] = first + (lane / 2) as u8;
+        lane += 1;
+    }
+    indices
 }
 
 /// What [`round_raised_f32`] adds.

@@ -24,6 +24,11 @@ impl Polygons {
         &self.points
     }
 
+    /// The points of the polygon, if there is but one.
+    pub(crate) fn only(&self) -> Option<&[Point]> {
+        (self.ends.len() == 1).then_some(&self.points)
+    }
+
     /// The points of each polygon.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &[Point]> {
         let mut start = 0;

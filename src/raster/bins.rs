@@ -3,6 +3,7 @@
 use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
 
+use super::bar::Bar;
 use super::cut::Cutter;
 use super::edge::{Edge, FixedPoint, append_closed};
 use super::exact::{MOST_CORNERS, Resolver};
@@ -44,6 +45,26 @@ pub(crate) enum Content {
     Rect(FixedRect, [u8; 4]),
     /// A shape that has no edges.
     RoundRect(RoundRect),
+    /// A thin bar: one of [`EdgeBins::bars`].
+    Bar(u32),
+}
+
+/// A bar, and how much of it is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BarItem {
+    pub(crate) bar: Bar,
+    /// The device pixels that may be drawn.
+    pub(crate) clip: IntRect,
+    /// The colour in which it is drawn over what is there, if it is: there is no need to look at the command.
+    pub(crate) color: Option<[u8; 4]>,
+}
+
+impl BarItem {
+    /// The pixels that it touches of those that may be drawn.
+    #[inline(always)]
+    pub(crate) fn bounds(&self) -> IntRect {
+        self.bar.bounds.intersect(self.clip)
+    }
 }
 
 impl BandItem {
@@ -67,6 +88,7 @@ pub(crate) struct BandList {
 #[derive(Debug, Default)]
 pub(crate) struct EdgeBins {
     points: Vec<FixedPoint>,
+    bars: Vec<BarItem>,
     bands: Vec<BandList>,
     /// log2 of a band's height in 1/256 pixel.
     band_shift: u32,
@@ -78,6 +100,7 @@ pub(crate) struct EdgeBins {
 pub(crate) enum Boundary<'a> {
     Edges(Edges<'a>),
     RoundRect(RoundRect),
+    Bar(&'a Bar),
 }
 
 impl Default for Boundary<'_> {
@@ -91,7 +114,7 @@ impl Boundary<'_> {
     pub(crate) fn cost(self) -> usize {
         match self {
             Self::Edges(edges) => edges.len(),
-            Self::RoundRect(_) => 8,
+            Self::RoundRect(_) | Self::Bar(_) => 8,
         }
     }
 }
@@ -165,6 +188,7 @@ impl EdgeBins {
     pub(crate) fn reset(&mut self, bands: usize, height_shift: u32) {
         self.band_shift = height_shift + fixed::SHIFT;
         self.points.clear();
+        self.bars.clear();
         for band in &mut self.bands {
             band.edges.clear();
             band.items.clear();
@@ -186,8 +210,15 @@ impl EdgeBins {
                 Boundary::Edges(Edges { points: &self.points, starts })
             }
             Content::RoundRect(shape) => Boundary::RoundRect(shape),
+            Content::Bar(index) => self.bar(index).map_or(Boundary::default(), |item| Boundary::Bar(&item.bar)),
             Content::Rect(..) => Boundary::default(),
         }
+    }
+
+    /// The bar that an item names.
+    #[inline(always)]
+    pub(crate) fn bar(&self, index: u32) -> Option<&BarItem> {
+        self.bars.get(index as usize)
     }
 
     /// Lists `command`, which has no edges, for every band that `bounds` (device pixels) touches.
@@ -215,6 +246,19 @@ impl EdgeBins {
             for band in self.bands_of(seen.top, seen.bottom) {
                 band.items.push(BandItem { command, role, content: Content::RoundRect(shape) });
             }
+        }
+    }
+
+    /// Lists `command`, a thin bar, for every band that it touches.
+    #[inline(always)]
+    pub(crate) fn list_bar(&mut self, command: u32, item: BarItem) {
+        let (index, bounds) = (self.bars.len() as u32, item.bounds());
+        if bounds.is_empty() {
+            return;
+        }
+        self.bars.push(item);
+        for band in self.bands_of(bounds.top << fixed::SHIFT, bounds.bottom << fixed::SHIFT) {
+            band.items.push(BandItem { command, role: Role::Plain, content: Content::Bar(index) });
         }
     }
 

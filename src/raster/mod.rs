@@ -15,6 +15,7 @@
 //! assert_eq!(grid, [*b"##......", *b"..####..", *b"......##"]);
 //! ```
 
+pub(crate) mod bar;
 pub(crate) mod batch;
 pub(crate) mod bins;
 mod boxes;

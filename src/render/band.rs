@@ -7,6 +7,7 @@
 
 use fearless_simd::Simd;
 
+use super::bar::paint_bar;
 use super::clip_cache::{ClipCache, clip_for};
 use super::coverage::{Coverage, accumulate, accumulate_stretches};
 use super::hidden::{find_hidden, find_visible};
@@ -149,6 +150,16 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                 }
                 let BandScratch { layers, occlusion, .. } = &mut *scratch;
                 paint_rect(simd, frame, rect, color, &mut open_surface(frame, target, layers), occlusion);
+                continue;
+            }
+            if let Content::Bar(index) = item.content
+                && let Some(bar) = piece.chunk.bar(index)
+                && let Some(color) = bar.color
+            {
+                if find_visible(frame, scratch, bar.bounds()) {
+                    let BandScratch { layers, .. } = &mut *scratch;
+                    paint_bar(simd, frame, bar, color, &mut open_surface(frame, target, layers));
+                }
                 continue;
             }
             let Some(command) = frame.list.commands.get(item.command as usize) else { continue };

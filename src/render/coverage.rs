@@ -9,6 +9,7 @@ use super::prepare::is_exact;
 use crate::display_list::{Geometry, Span};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::fixed;
+use crate::raster::bar::add_bar;
 use crate::raster::batch::add_edges;
 use crate::raster::bins::{Boundary, Edges};
 use crate::raster::cell::Accumulator;
@@ -128,6 +129,10 @@ fn accumulate_inner<S: Simd>(
             add_round_rect(simd, cells, &shape, bounds.intersect(frame.area()), top, frame.strips, reaches);
             return Coverage::Cells(CoverageRule::NonZero);
         }
+        Boundary::Bar(bar) => {
+            add_bar(simd, cells, bar, bounds.intersect(frame.area()), frame.top, reaches);
+            return Coverage::Cells(CoverageRule::NonZero);
+        }
     };
     let grid = match antialias {
         Antialias::Analytic | Antialias::Exact => {
@@ -167,7 +172,7 @@ pub(super) fn accumulate_stretches<S: Simd>(
         let band = stretch.chunk.band(frame.index)?;
         match stretch.chunk.boundary(band, *band.items.first()?) {
             Boundary::Edges(edges) => Some(edges),
-            Boundary::RoundRect(_) => None,
+            Boundary::RoundRect(_) | Boundary::Bar(_) => None,
         }
     });
     kernel::add_crowds(simd, cells, &mut edges, frame.top << fixed::SHIFT, frame.strips, reaches);

@@ -5,6 +5,7 @@
 //! alone, so that neither the number of threads nor the bands' height shows.
 
 mod band;
+mod bar;
 mod clip;
 mod clip_cache;
 mod coverage;

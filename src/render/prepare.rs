@@ -16,7 +16,8 @@ use crate::path::polygons::Polygons;
 use crate::path::round_rect::{may_be_round_rect, round_rect};
 use crate::path::stretch::Stretch;
 use crate::path::stroke::{StrokeScratch, stroke, stroke_stretch};
-use crate::raster::bins::{BandItem, BandList, Boundary, EdgeBins, Role, extent};
+use crate::raster::bar::Bar;
+use crate::raster::bins::{BandItem, BandList, BarItem, Boundary, EdgeBins, Role, extent};
 use crate::raster::round_rect::RoundRect;
 use crate::style::{Antialias, FillRule};
 
@@ -83,6 +84,12 @@ impl Chunk {
         self.bins.boundary(band, item)
     }
 
+    /// The bar that an item names.
+    #[inline(always)]
+    pub(super) fn bar(&self, index: u32) -> Option<&BarItem> {
+        self.bins.bar(index)
+    }
+
     /// If it holds but a stretch of one command: which.
     pub(super) fn stretch(&self) -> Option<Stretch> {
         self.stretch
@@ -116,7 +123,8 @@ impl Chunk {
                         Some((rect, color)) => self.bins.list_rect(number, role, rect.intersect(frame), color),
                         None => {
                             let (antialias, bounds) = (draw.antialias, draw.bounds);
-                            self.shape(simd, list, (number, role), &draw.geometry, antialias, bounds, frame);
+                            let color = solid(list, draw);
+                            self.shape(simd, list, (number, role), &draw.geometry, antialias, bounds, color, frame);
                         }
                     }
                 }
@@ -125,7 +133,7 @@ impl Chunk {
                         && let ClipKind::Geometry { geometry, antialias } = &clip.kind
                     {
                         let item = (number, Role::Plain);
-                        self.shape(simd, list, item, geometry, *antialias, clip.bounds, frame);
+                        self.shape(simd, list, item, geometry, *antialias, clip.bounds, None, frame);
                     }
                 }
                 Command::BeginLayer(layer) => self.bins.list(number, Role::Bracket, layer.bounds.intersect(frame)),
@@ -152,6 +160,7 @@ impl Chunk {
         geometry: &Geometry,
         antialias: Antialias,
         bounds: IntRect,
+        color: Option<[u8; 4]>,
         frame: IntRect,
     ) {
         let bounds = bounds.intersect(frame);
@@ -203,6 +212,22 @@ impl Chunk {
                 return;
             }
         }
+        if is_exact(antialias)
+            && self.stretch.is_none()
+            && let Some(polygon) = self.polygons.only()
+        {
+            // Such as lines along the axes.
+            if let Some(color) = color
+                && let Some(rect) = upright_rect(polygon)
+            {
+                self.bins.list_rect(item.0, item.1, FixedRect::new(rect).intersect(bounds), color);
+                return;
+            }
+            if let Some(bar) = Bar::new(polygon) {
+                self.bins.list_bar(item.0, BarItem { bar, clip: bounds, color });
+                return;
+            }
+        }
         let crossings = (antialias == Antialias::Exact).then_some(match geometry {
             Geometry::Fill { rule, .. } => *rule,
             _ => FillRule::NonZero,
@@ -224,17 +249,20 @@ fn role(draw: &Draw) -> Role {
 /// What a draw covers and in which colour, if it is a rectangle, in one colour, over what is there.
 #[inline(always)]
 fn solid_rect(list: &DisplayList, draw: &Draw) -> Option<(FixedRect, [u8; 4])> {
-    let over = draw.blend_mode == BlendMode::SourceOver || draw.blend_mode == BlendMode::Source && draw.opaque;
-    if draw.clip != ClipId::NONE || !over {
-        return None;
-    }
     let rect = match draw.geometry {
         Geometry::Rect(rect) if is_exact(draw.antialias) => rect.intersect(draw.bounds),
         Geometry::Bounds => FixedRect::of_pixels(draw.bounds),
         _ => return None,
     };
+    solid(list, draw).map(|color| (rect, color))
+}
+
+/// In which colour a draw is, if it is one, over what is there, within its bounds.
+#[inline(always)]
+fn solid(list: &DisplayList, draw: &Draw) -> Option<[u8; 4]> {
+    let over = draw.blend_mode == BlendMode::SourceOver || draw.blend_mode == BlendMode::Source && draw.opaque;
     match list.paints.get(draw.paint as usize) {
-        Some(PreparedPaint::Solid(color)) => Some((rect, *color)),
+        Some(PreparedPaint::Solid(color)) if draw.clip == ClipId::NONE && over => Some(*color),
         _ => None,
     }
 }
@@ -242,6 +270,14 @@ fn solid_rect(list: &DisplayList, draw: &Draw) -> Option<(FixedRect, [u8; 4])> {
 /// Whether coverage is area, not a count of samples.
 pub(super) fn is_exact(antialias: Antialias) -> bool {
     matches!(antialias, Antialias::Analytic | Antialias::Exact)
+}
+
+/// The rectangle that a polygon is, if its sides lie along the axes.
+fn upright_rect(polygon: &[Point]) -> Option<Rect> {
+    let [a, b, c, d]: &[Point; 4] = polygon.try_into().ok()?;
+    let is_upright =
+        a.x == b.x && b.y == c.y && c.x == d.x && d.y == a.y || a.y == b.y && b.x == c.x && c.y == d.y && d.x == a.x;
+    is_upright.then(|| Rect::from_points(polygon)).flatten()
 }
 
 fn rectangle<K: PolygonSink>(rect: Rect, sink: &mut K) {

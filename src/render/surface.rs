@@ -51,6 +51,13 @@ impl<'a> Surface<'a> {
         );
     }
 
+    /// What there is of a row from the device column `column` on, which the surface must hold; the surface's first row is 0.
+    #[inline(always)]
+    pub(super) fn from(&mut self, row: i32, column: i32) -> &mut [u8] {
+        let start = (column - (self.first_block * BLOCK_WIDTH) as i32) as usize * 4;
+        self.data.get_mut(row as usize * self.stride + start..).unwrap_or(&mut [])
+    }
+
     /// The rows of strip `strip` that exist.
     #[inline(always)]
     pub(super) fn strip(&mut self, strip: usize) -> StripRows<'_> {

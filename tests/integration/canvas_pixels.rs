@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rastrum::raster::{circle, line};
 use rastrum::{
     Antialias, BlendMode, Canvas, Color, Error, FillRule, FilterQuality, ImagePaint, IntRect, Limits, Mask, Paint,
-    Path, Pixmap, PixmapMut, PixmapRef, Point, Stroke, Transform,
+    Path, Pattern, Pixmap, PixmapMut, PixmapRef, Point, SpreadMode, Stroke, Transform,
 };
 
 use crate::canvas::{HALF_BLACK, alphas, drawn, rect, text, unit};
@@ -153,6 +153,72 @@ fn an_aliased_hairline_is_bresenhams() {
 }
 
 // Hit tests
+
+/// Lines of all directions and widths, some of which leave a canvas of 64 × 48.
+fn lines(mut draw: impl FnMut(Point, Point, &Stroke)) {
+    let mut random = Random::new(17);
+    let mut within = |low: i64, high: i64| random.within(100 * low..100 * high) as f32 / 100.0;
+    for index in 0..120 {
+        let from = Point::new(within(-20, 84), within(-20, 68));
+        let to = if index % 3 == 0 {
+            from + Point::new(within(-9, 9), within(-9, 9))
+        } else {
+            Point::new(within(-20, 84), within(-20, 68))
+        };
+        draw(from, to, &Stroke::new(within(0, 5)));
+    }
+}
+
+#[test]
+fn a_line_covers_the_same_with_any_paint_and_through_clips_and_layers() {
+    let black = Arc::new(drawn(1, 1, |canvas| canvas.clear(Color::BLACK)));
+    let pattern = Pattern::new(black).with_spread(SpreadMode::Repeat);
+    let mut around = Path::new();
+    around.polygon(&[(-90.0, -90.0), (300.0, -90.0), (-90.0, 300.0)].map(Point::from));
+    lines(|from, to, stroke| {
+        let plain = drawn(64, 48, |canvas| canvas.draw_line(from, to, stroke, Color::BLACK));
+        let exact = Paint::new(Color::BLACK).with_antialias(Antialias::Exact);
+        let pictures = [
+            drawn(64, 48, |canvas| canvas.draw_line(from, to, stroke, pattern.clone())),
+            drawn(64, 48, |canvas| canvas.draw_line(from, to, stroke, exact)),
+            drawn(64, 48, |canvas| {
+                let paint = Paint::new(Color::BLACK).with_blend_mode(BlendMode::DestinationOver);
+                canvas.draw_line(from, to, stroke, paint);
+            }),
+            drawn(64, 48, |canvas| {
+                canvas.clip_path(&around, FillRule::NonZero, Antialias::Analytic);
+                canvas.draw_line(from, to, stroke, Color::BLACK);
+            }),
+            drawn(64, 48, |canvas| {
+                canvas.push_layer(1.0, BlendMode::SourceOver);
+                canvas.draw_line(from, to, stroke, Color::BLACK);
+                canvas.pop_layer();
+            }),
+        ];
+        for (index, picture) in pictures.iter().enumerate() {
+            assert!(*picture == plain, "{index}: {from:?} to {to:?}, {stroke:?}");
+        }
+    });
+}
+
+#[test]
+fn a_line_is_cut_at_the_canvas_and_at_clips_of_whole_pixels() {
+    lines(|from, to, stroke| {
+        let large = drawn(128, 96, |canvas| canvas.draw_line(from, to, stroke, HALF_BLACK));
+        let small = drawn(64, 48, |canvas| canvas.draw_line(from, to, stroke, HALF_BLACK));
+        let clipped = drawn(64, 48, |canvas| {
+            canvas.clip_rect(rect(13.0, 9.0, 45.0, 41.0), Antialias::Analytic);
+            canvas.draw_line(from, to, stroke, HALF_BLACK);
+        });
+        for (x, y) in (0..48).flat_map(|y| (0..64).map(move |x| (x, y))) {
+            let whole = large.pixel(x, y);
+            assert_eq!(small.pixel(x, y), whole, "{x}, {y}: {from:?} to {to:?}, {stroke:?}");
+            let is_inside = (13..45).contains(&x) && (9..41).contains(&y);
+            let expected = if is_inside { whole } else { Some([0; 4]) };
+            assert_eq!(clipped.pixel(x, y), expected, "{x}, {y}: {from:?} to {to:?}, {stroke:?}");
+        }
+    });
+}
 
 #[test]
 fn hits_are_where_a_drawing_covers_pixel_centres() {

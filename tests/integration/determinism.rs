@@ -46,6 +46,11 @@ fn draw(canvas: &mut Canvas<'_>, antialias: Antialias) {
             canvas.fill_path(&path, rule, paint.clone().with_blend_mode(mode));
         }
         canvas.stroke_path(&path, &Stroke::new(random(6.0)).with_join(LineJoin::Round), &paint);
+        for width in [0.0, 0.7, 1.5, 3.0] {
+            let (from, to) = ((random(200.0), random(150.0)), (random(200.0), random(150.0)));
+            canvas.draw_line(from, to, &Stroke::new(width), Paint::new(color).with_antialias(antialias));
+            canvas.draw_line(to, (to.0 + random(20.0), to.1 - random(20.0)), &Stroke::new(width), &paint);
+        }
         canvas.restore();
     }
     canvas.set_shadow(Shadow { offset_x: 5.0, offset_y: 4.0, deviation: 3.0, color: Color::BLACK });
