@@ -8,9 +8,9 @@ pub(crate) trait PolygonSink {
     fn begin(&mut self, p: Point);
     /// Adds a straight edge to `p`.
     fn line(&mut self, p: Point);
-    /// Adds straight edges to the first `count` (0 ..= 8) points.
+    /// Adds straight edges to the first `count` points, up to all of them.
     #[inline(always)]
-    fn lines(&mut self, points: &[Point; 8], count: usize) {
+    fn lines<const N: usize>(&mut self, points: &[Point; N], count: usize) {
         for p in points.iter().take(count) {
             self.line(*p);
         }
@@ -20,7 +20,7 @@ pub(crate) trait PolygonSink {
 }
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::{f32x8, f64x4, i32x8};
 
 use super::builder::Verb;
 
@@ -35,7 +35,7 @@ const MAX_PIECES: f32 = 1024.0;
 /// Writes a path, whose points are in device pixels, as closed polygons: what filling it covers.
 ///
 /// Curves are cut at equal parameters into the number of pieces that Wang's formula gives (Wang 1984;
-/// Sederberg, *Computer Aided Geometric Design*, §10.6), eight points at a time; see [`balance`] for where
+/// Sederberg, *Computer Aided Geometric Design*, §10.6), eight points at a time; see [`balance_share`] for where
 /// the points lie. Subpaths of a single point are left out.
 #[inline(always)]
 pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(simd: S, verbs: &[Verb], points: &[Point], sink: &mut K) {
@@ -43,7 +43,9 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(simd: S, verbs: &[Verb], poi
     let mut start = Point::ZERO;
     let mut last = Point::ZERO;
     let mut rest = points;
-    for verb in verbs {
+    let mut verbs = verbs;
+    while let Some((verb, after_verb)) = verbs.split_first() {
+        verbs = after_verb;
         if matches!(verb, Verb::MoveTo | Verb::Close) {
             if open {
                 sink.end();
@@ -68,50 +70,168 @@ pub(crate) fn flatten_fill<S: Simd, K: PolygonSink>(simd: S, verbs: &[Verb], poi
                 sink.line(last);
             }
             Verb::QuadTo => {
-                let Some(([c, p], after)) = rest.split_first_chunk() else { break };
-                rest = after;
-                let (c, p) = (*c, *p);
-                let bend = last - c - (c - p);
-                // |second derivative| / 8 / tolerance, for n² pieces.
-                let pieces = piece_count(simd, bend.dot(bend), 0.25 / TOLERANCE);
-                let b = (c - last) * 2.0;
-                let start = last - bend * (2.0 * balance(pieces));
-                polynomial(simd, [Point::ZERO, bend, b, start], pieces, p, sink);
-                last = p;
+                let mut from = pairs(simd, &last);
+                // Curves mostly follow each other.
+                loop {
+                    let Some(([c, p], after)) = rest.split_first_chunk() else { return end(open, sink) };
+                    rest = after;
+                    from = quad(simd, from, [c, p], sink);
+                    last = *p;
+                    let Some((Verb::QuadTo, after)) = verbs.split_first() else { break };
+                    verbs = after;
+                }
             }
             Verb::CubicTo => {
-                let Some(([c1, c2, p], after)) = rest.split_first_chunk() else { break };
-                rest = after;
-                let (c1, c2, p) = (*c1, *c2, *p);
-                let (bend1, bend2) = (last - c1 - (c1 - c2), c1 - c2 - (c2 - p));
-                let (d1, d2) = (bend1.dot(bend1), bend2.dot(bend2));
-                let pieces = piece_count(simd, if d1 > d2 { d1 } else { d2 }, 0.75 / TOLERANCE);
-                let a = (p - last) - (c2 - c1) * 3.0;
-                let b = bend1 * 3.0;
-                let share = balance(pieces);
-                let c = (c1 - last) * 3.0 - a * (6.0 * share);
-                polynomial(simd, [a, b, c, last - b * (2.0 * share)], pieces, p, sink);
-                last = p;
+                let mut from = pairs(simd, &last);
+                loop {
+                    let Some(([c1, c2, p], after)) = rest.split_first_chunk() else { return end(open, sink) };
+                    rest = after;
+                    from = cubic(simd, from, [c1, c2, p], sink);
+                    last = *p;
+                    let Some((Verb::CubicTo, after)) = verbs.split_first() else { break };
+                    verbs = after;
+                }
             }
         }
     }
+    end(open, sink);
+}
+
+#[inline(always)]
+fn end<K: PolygonSink>(open: bool, sink: &mut K) {
     if open {
         sink.end();
     }
 }
 
-/// ⌈√(factor · √squared)⌉ within 1 ..= [`MAX_PIECES`]; 1 if it is not finite.
+/// A point four times, x and y in lanes next to each other.
 #[inline(always)]
-fn piece_count<S: Simd>(simd: S, squared: f32, factor: f32) -> u32 {
-    // Comparing fourth powers needs no root, and all of them at once no branch: how many pieces a curve has is hard to
-    // guess.
-    let fourth = squared * (factor * factor);
-    let powers = f32x8::simd_from(simd, [1.0, 16.0, 81.0, 256.0, 625.0, 1296.0, 2401.0, 4096.0]);
-    let more = f32x8::splat(simd, fourth).simd_gt(powers).to_bitmask() as u32;
-    if more < 0xff { more.count_ones() + 1 } else { many_pieces(fourth) }
+fn pairs<S: Simd>(simd: S, p: &Point) -> f32x8<S> {
+    // Read as one number, not as two that are put together again.
+    f64x4::splat(simd, f64::from_bits(bytemuck::pod_read_unaligned(bytemuck::bytes_of(p)))).bitcast()
 }
 
-/// As [`piece_count`], of the fourth power of the count, for curves of more than eight.
+/// The point of which there are four.
+#[inline(always)]
+fn point<S: Simd>(pairs: f32x8<S>) -> Point {
+    let [x, y, ..] = pairs.to_array();
+    Point::new(x, y)
+}
+
+/// Writes a quadratic curve from `from` on; gives back its end.
+#[inline(always)]
+fn quad<S: Simd, K: PolygonSink>(simd: S, from: f32x8<S>, [c, p]: [&Point; 2], sink: &mut K) -> f32x8<S> {
+    let (by, to) = (pairs(simd, c), pairs(simd, p));
+    let bend = from - by - (by - to);
+    // |second derivative| / 8 / tolerance, for n² pieces.
+    let fourth = squared_length(bend) * (0.25 / TOLERANCE * (0.25 / TOLERANCE));
+    let b = (by - from) * 2.0;
+    if let Some(few) = Few::of(simd, fourth) {
+        let start = from - bend * few.double_share;
+        few.write(
+            simd,
+            #[inline(always)]
+            |at| (at * bend + b) * at + start,
+            to,
+            sink,
+        );
+    } else {
+        let pieces = many_pieces(fourth);
+        let start = from - bend * (2.0 * balance_share(pieces as f32));
+        polynomial(simd, [Point::ZERO, point(bend), point(b), point(start)], pieces, *p, sink);
+    }
+    to
+}
+
+/// As [`quad`], of a cubic one.
+#[inline(always)]
+fn cubic<S: Simd, K: PolygonSink>(simd: S, from: f32x8<S>, [c1, c2, p]: [&Point; 3], sink: &mut K) -> f32x8<S> {
+    let (one, two, to) = (pairs(simd, c1), pairs(simd, c2), pairs(simd, p));
+    let (bend1, bend2) = (from - one - (one - two), one - two - (two - to));
+    let (d1, d2) = (squared_length(bend1), squared_length(bend2));
+    let fourth = (if d1 > d2 { d1 } else { d2 }) * (0.75 / TOLERANCE * (0.75 / TOLERANCE));
+    let a = (to - from) - (two - one) * 3.0;
+    let b = bend1 * 3.0;
+    let c = (one - from) * 3.0;
+    if let Some(few) = Few::of(simd, fourth) {
+        let (c, start) = (c - a * (3.0 * few.double_share), from - b * few.double_share);
+        few.write(
+            simd,
+            #[inline(always)]
+            |at| ((at * a + b) * at + c) * at + start,
+            to,
+            sink,
+        );
+    } else {
+        let pieces = many_pieces(fourth);
+        let double_share = 2.0 * balance_share(pieces as f32);
+        let (c, start) = (c - a * (3.0 * double_share), from - b * double_share);
+        polynomial(simd, [point(a), point(b), point(c), point(start)], pieces, *p, sink);
+    }
+    to
+}
+
+#[inline(always)]
+fn squared_length<S: Simd>(pairs: f32x8<S>) -> f32 {
+    let [x, y, ..] = (pairs * pairs).to_array();
+    x + y
+}
+
+/// What curves of up to eight pieces have in common, as nearly all have no more.
+struct Few {
+    /// The parameters of their points, each twice.
+    times: [[f32; 8]; 2],
+    count: usize,
+    pieces: f32,
+    /// Twice what [`balance_share`] says.
+    double_share: f32,
+}
+
+impl Few {
+    const MOST: usize = 8;
+
+    /// Those of one piece, of two, …
+    const ALL: [Self; Self::MOST] = {
+        let mut all = [const { Self { times: [[0.0; 8]; 2], count: 0, pieces: 0.0, double_share: 0.0 } }; Self::MOST];
+        let mut index = 0;
+        while index < Self::MOST {
+            let pieces = (index + 1) as f32;
+            let mut lane = 0;
+            while lane < 16 {
+                all[index].times[lane / 8][lane % 8] = (lane / 2 + 1) as f32 * (1.0 / pieces);
+                lane += 1;
+            }
+            all[index].count = index + 1;
+            all[index].pieces = pieces;
+            all[index].double_share = 2.0 * balance_share(pieces);
+            index += 1;
+        }
+        all
+    };
+
+    /// Those of a curve of which the fourth power of the number of pieces is given, if they are few.
+    #[inline(always)]
+    fn of<S: Simd>(simd: S, fourth: f32) -> Option<&'static Self> {
+        // Comparing fourth powers needs no root, and all of them at once no branch: how many pieces a curve has is hard to
+        // guess.
+        let powers = f32x8::simd_from(simd, [1.0, 16.0, 81.0, 256.0, 625.0, 1296.0, 2401.0, 4096.0]);
+        let passed = f32x8::splat(simd, fourth).simd_gt(powers).to_bitmask() as u32;
+        Self::ALL.get(passed.count_ones() as usize)
+    }
+
+    /// Writes the points of the curve `at` their parameters, and instead of the last the curve's end.
+    #[inline(always)]
+    fn write<S: Simd, K: PolygonSink>(&self, simd: S, at: impl Fn(f32x8<S>) -> f32x8<S>, end: f32x8<S>, sink: &mut K) {
+        let numbers = f32x8::simd_from(simd, [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0]);
+        let [low, high] = &self.times;
+        let low = numbers.simd_eq(self.pieces).select(end, at(f32x8::load_array_ref(simd, low)));
+        let high = numbers.simd_eq(self.pieces - 4.0).select(end, at(f32x8::load_array_ref(simd, high)));
+        let points: [Point; Self::MOST] = bytemuck::cast([low.to_array(), high.to_array()]);
+        sink.lines(&points, self.count);
+    }
+}
+
+/// The fourth root of `fourth`, rounded up, for curves of more than eight pieces, within [`MAX_PIECES`]; 1 if it is not finite.
 #[cold]
 fn many_pieces(fourth: f32) -> u32 {
     let pieces = fourth.sqrt().sqrt();
@@ -128,36 +248,6 @@ fn many_pieces(fourth: f32) -> u32 {
 /// points on the curve, a disc would be too small. So the points move outwards by as much, and the polygon has the
 /// curve's area. As the ends stay where they are, the others move a little farther, but no more than the chord's
 /// greatest distance, h² / 8 · C″.
-#[inline(always)]
-fn balance(pieces: u32) -> f32 {
-    const FEW: [f32; 17] = {
-        let mut shares = [0.0; 17];
-        let mut pieces = 1;
-        while pieces < 17 {
-            shares[pieces] = balance_share(pieces as f32);
-            pieces += 1;
-        }
-        shares
-    };
-    // A division each would cost as much as a point of the curve.
-    FEW.get(pieces as usize).copied().unwrap_or_else(|| balance_share(pieces as f32))
-}
-
-/// 1 / pieces.
-#[inline(always)]
-fn reciprocal(pieces: u32) -> f32 {
-    const FEW: [f32; 17] = {
-        let mut parts = [1.0; 17];
-        let mut pieces = 1;
-        while pieces < 17 {
-            parts[pieces] = 1.0 / pieces as f32;
-            pieces += 1;
-        }
-        parts
-    };
-    FEW.get(pieces as usize).copied().unwrap_or_else(|| 1.0 / pieces as f32)
-}
-
 const fn balance_share(pieces: f32) -> f32 {
     let squares = pieces * pieces;
     if pieces > 2.0 { 1.0 / (12.0 * (squares - pieces)) } else { 0.125 / squares }
@@ -166,7 +256,7 @@ const fn balance_share(pieces: f32) -> f32 {
 /// Writes the points of ((a·t + b)·t + c)·t + d at t = 1/n … (n − 1)/n, and `end`.
 #[inline(always)]
 fn polynomial<S: Simd, K: PolygonSink>(simd: S, [a, b, c, d]: [Point; 4], pieces: u32, end: Point, sink: &mut K) {
-    let step = reciprocal(pieces);
+    let step = 1.0 / pieces as f32;
     let mut index = 1;
     loop {
         let counts = i32x8::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7]) + index as i32;
@@ -175,7 +265,6 @@ fn polynomial<S: Simd, K: PolygonSink>(simd: S, [a, b, c, d]: [Point; 4], pieces
         let y = ((t * a.y + b.y) * t + c.y) * t + d.y;
         let (low, high) = x.interleave(y);
         let points: [Point; 8] = bytemuck::cast([low.to_array(), high.to_array()]);
-        // Curves of one piece go this way as well: no point counts then, and there is no branch.
         sink.lines(&points, (pieces - index).min(8) as usize);
         index += 8;
         if index >= pieces {

@@ -53,8 +53,8 @@ impl PolygonSink for Polygons {
     }
 
     #[inline(always)]
-    fn lines(&mut self, points: &[Point; 8], count: usize) {
-        // All eight in one piece, and back to those that count: cheaper than one by one.
+    fn lines<const N: usize>(&mut self, points: &[Point; N], count: usize) {
+        // All of them in one piece, and back to those that count: cheaper than one by one.
         let end = self.points.len() + count;
         self.points.extend_from_slice(points);
         self.points.truncate(end);
