@@ -1,7 +1,7 @@
 //! Small pieces of lane arithmetic that every level rounds alike.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x8, i32x8, u8x16, u8x32, u16x8, u16x16};
+use fearless_simd::{Level, f32x8, f64x2, i32x4, i32x8, u8x16, u8x32, u16x8, u16x16};
 
 /// An array of `f` of each index. `array::from_fn` and `array::map` are not always inlined, and vectors in them are then reckoned
 /// without the caller's SIMD level: every operation becomes a call.
@@ -69,6 +69,19 @@ pub(crate) fn max_i32<S: Simd>(a: i32x8<S>, b: i32x8<S>) -> i32x8<S> {
 #[expect(clippy::disallowed_methods, reason = "integer minimum is the same at every level")]
 pub(crate) fn min_i32<S: Simd>(a: i32x8<S>, b: i32x8<S>) -> i32x8<S> {
     a.min(b)
+}
+
+/// The least lane of each of four vectors.
+#[inline(always)]
+#[expect(clippy::disallowed_methods, reason = "integer minimum is the same at every level")]
+pub(crate) fn least_of_each<S: Simd>([a, b, c, d]: [i32x8<S>; 4]) -> [i32; 4] {
+    let ((a, e), (b, f), (c, g), (d, h)) = (a.split(), b.split(), c.split(), d.split());
+    let (a, b, c, d) = (a.min(e), b.min(f), c.min(g), d.min(h));
+    // Two lanes of each are left, then one.
+    let (a_b, c_d) = (a.zip_low(b).min(a.zip_high(b)), c.zip_low(d).min(c.zip_high(d)));
+    let (a_b, c_d): (f64x2<S>, f64x2<S>) = (a_b.bitcast(), c_d.bitcast());
+    let (one, other): (i32x4<S>, i32x4<S>) = (a_b.zip_low(c_d).bitcast(), a_b.zip_high(c_d).bitcast());
+    one.min(other).to_array()
 }
 
 /// Truncation toward zero of lanes that are known to lie within ±2^31.
@@ -162,6 +175,21 @@ pub(crate) fn round_f64(v: f64) -> i32 {
 mod tests {
     use super::*;
     use crate::num::level::{SimdLevel, dispatch};
+
+    #[test]
+    fn the_least_of_four_vectors_is_found_in_any_lane() {
+        for level in SimdLevel::available() {
+            dispatch!(level, simd => {
+                for lane in 0..8 {
+                    let of = |least: i32, lane: usize| {
+                        i32x8::load_array(simd, std::array::from_fn(|i| if i == lane & 7 { least } else { least + 9 + i as i32 }))
+                    };
+                    let found = least_of_each([of(-7, lane), of(5, lane + 1), of(i32::MIN, lane + 3), of(80, lane + 6)]);
+                    assert_eq!(found, [-7, 5, i32::MIN, 80], "{lane} at {level:?}");
+                }
+            });
+        }
+    }
 
     #[test]
     fn div255_rounds_to_nearest_on_its_whole_range() {

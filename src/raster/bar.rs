@@ -469,7 +469,7 @@ impl<S: Simd> RunSink<S> for CellSink<'_> {
             (low, high) = (low.max(first), high.min(end));
         }
         let (low, high) = (low.max(column), high.min(column + RUN));
-        let Some(strip) = self.cells.strip(row / BLOCK_HEIGHT) else { return };
+        let Some(mut strip) = self.cells.strip(row / BLOCK_HEIGHT) else { return };
         if low >= high {
             return;
         }
@@ -655,7 +655,7 @@ mod tests {
                 add_bar(simd, &mut cells, &bar, clip, top, reaches);
                 for strip in 0..7 {
                     swept.0 = top + 8 * strip as i32;
-                    sweep(simd, cells.strip(strip).unwrap(), 13, CoverageRule::NonZero, &mut swept);
+                    sweep(simd, &mut cells.strip(strip).unwrap(), 13, CoverageRule::NonZero, &mut swept);
                 }
             });
             let seen = if index % 2 == 0 { clip } else { IntRect::from_ltrb(64, 41, 112, 96) };

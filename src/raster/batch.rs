@@ -3,17 +3,17 @@
 //! do, are then added straight away; the others take the kernel's general way.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::{f32x8, i32x8, mask32x8};
 
 use super::bins::Edges;
-use super::cell::{Accumulator, Column, Strip};
+use super::cell::{Accumulator, Column};
 use super::edge::{FineLine, FixedPoint};
 use super::kernel::{
     FINE_SHIFT, PieceLine, Reach, RowParts, STRIP_SHIFT, Slant, add_across, add_downward, add_row_parts,
     add_strip_part, are_flat, fine, is_flat, two_columns,
 };
 use crate::num::fixed;
-use crate::num::lanes::{greater_f32, lesser_f32, max_i32, min_i32};
+use crate::num::lanes::{greater_f32, least_of_each, lesser_f32, max_i32, min_i32};
 use crate::surface::block::BLOCK_HEIGHT;
 
 /// From 24.8 to 20.12 fixed point.
@@ -39,7 +39,7 @@ pub(crate) fn add_edges<S: Simd>(
             let small = eight.small & all;
             if is_worth_a_batch(small) {
                 single &= !small;
-                others |= add_small(simd, cells, &eight, small, strips, reaches);
+                others = others & !small | add_small(simd, cells, &eight, small, strips, reaches);
             }
             while single != 0 {
                 let lane = single.trailing_zeros() as usize & 7;
@@ -48,7 +48,7 @@ pub(crate) fn add_edges<S: Simd>(
                     others |= 1 << lane;
                 }
             }
-            let mut across = eight.across & all;
+            let mut across = eight.across & others;
             others &= !across;
             while across != 0 {
                 let lane = across.trailing_zeros() as usize & 7;
@@ -89,24 +89,25 @@ fn add_small<S: Simd>(
     reaches: &[Reach],
 ) -> u32 {
     let areas = SmallAreas::new(simd, eight);
-    // Mostly they are neighbours: what strip and columns have to be asked is then asked once for all of them.
-    if let Some(near) = Near::new(simd, eight, small) {
-        match near.place(strips, reaches) {
-            Place::Seen(strip, first, last) => {
-                if let Some(strip) = cells.strip(strip) {
-                    areas.add(simd, strip, eight, small, first, last);
-                }
-                return 0;
-            }
-            Place::Unseen => return 0,
-            Place::PartlySeen => {}
+    // Mostly they are neighbours: what strips and columns have to be asked is then asked once for all of them.
+    let near = Near::new(simd, eight, small);
+    if near.is_small() && cells.holds(near.last() + 3) && near.is_seen(reaches) {
+        cells.occupy(near.first_strip(), near.first(), near.last() + 1);
+        if near.last_strip() != near.first_strip() {
+            cells.occupy(near.last_strip(), near.first(), near.last() + 1);
         }
+        areas.add(simd, cells, eight, small);
+        return 0;
     }
     let mut others = 0;
     let mut left = small;
     while left != 0 {
         let lane = left.trailing_zeros() as usize & 7;
         left &= left - 1;
+        if eight.single >> lane & 1 == 0 {
+            others |= 1 << lane;
+            continue;
+        }
         let (strip, first, last) = match eight.place(lane, strips, reaches) {
             Place::Seen(strip, first, last) => (strip, first, last),
             Place::Unseen => continue,
@@ -115,50 +116,80 @@ fn add_small<S: Simd>(
                 continue;
             }
         };
-        let Some(strip) = cells.strip(strip) else { continue };
+        let Some(mut strip) = cells.strip(strip) else { continue };
         strip.occupy_pair(first, last + 1);
         let row = (eight.start_y[lane] >> fixed::SHIFT) as usize & (BLOCK_HEIGHT - 1);
-        let Some(columns) = strip.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) else {
-            continue;
-        };
-        let below = (row + 1) & (BLOCK_HEIGHT - 1);
-        areas.add_lane(columns, lane, row, below);
+        if let Some(columns) = strip.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) {
+            areas.add_lane(columns, lane, row);
+        }
     }
     others
 }
 
-/// Edges of one strip that are near each other.
+/// Where some edges lie.
 struct Near {
-    strip: i32,
     /// The least and the greatest x.
     least: i32,
     greatest: i32,
+    /// The least y and the greatest that belongs to them, from the band's top.
+    top: i32,
+    bottom: i32,
 }
 
 impl Near {
-    /// They lie less far apart: blocks between them are taken to hold values.
+    /// Edges less far apart are near each other: blocks between them are taken to hold values.
     const FARTHEST: i32 = 48 << fixed::SHIFT;
 
-    /// `edges`, of which there is one at least, if they are.
     #[inline(always)]
-    fn new<S: Simd>(simd: S, eight: &Eight, edges: u32) -> Option<Self> {
-        let strip = eight.start_y[edges.trailing_zeros() as usize & 7] >> STRIP_SHIFT;
-        let strips = i32x8::load_array_ref(simd, &eight.start_y) >> STRIP_SHIFT;
-        let here = strips.simd_eq(strip).to_bitmask() as u32;
+    fn new<S: Simd>(simd: S, eight: &Eight, edges: u32) -> Self {
         let bits = i32x8::simd_from(simd, [1, 2, 4, 8, 16, 32, 64, 128]);
         let chosen = (i32x8::splat(simd, edges as i32) & bits).simd_gt(0);
-        let least = chosen.select(i32x8::load_array_ref(simd, &eight.least), i32x8::splat(simd, i32::MAX));
-        let greatest = chosen.select(i32x8::load_array_ref(simd, &eight.greatest), i32x8::splat(simd, i32::MIN));
-        let [a, b, c, d, e, f, g, h] = least.to_array();
-        let least = a.min(b).min(c.min(d)).min(e.min(f).min(g.min(h)));
-        let [a, b, c, d, e, f, g, h] = greatest.to_array();
-        let greatest = a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)));
-        (here & edges == edges && greatest - least < Self::FARTHEST).then_some(Self { strip, least, greatest })
+        let none = i32x8::splat(simd, i32::MAX);
+        let (start_y, height) =
+            (i32x8::load_array_ref(simd, &eight.start_y), i32x8::load_array_ref(simd, &eight.height));
+        // The greatest is the least of what all bits are turned around of.
+        let [least, greatest, top, bottom] = least_of_each([
+            chosen.select(i32x8::load_array_ref(simd, &eight.least), none),
+            chosen.select(!i32x8::load_array_ref(simd, &eight.greatest), none),
+            chosen.select(start_y, none),
+            chosen.select(!(start_y + height - 1), none),
+        ]);
+        Self { least, greatest: !greatest, top, bottom: !bottom }
+    }
+
+    /// Whether they are near each other, in one strip or two.
+    #[inline(always)]
+    fn is_small(&self) -> bool {
+        self.greatest - self.least < Self::FARTHEST && self.last_strip() - self.first_strip() <= 1
     }
 
     #[inline(always)]
-    fn place(&self, strips: usize, reaches: &[Reach]) -> Place {
-        Place::of(self.strip, self.least, self.greatest, strips, reaches)
+    fn first(&self) -> usize {
+        (self.least >> fixed::SHIFT) as usize
+    }
+
+    #[inline(always)]
+    fn last(&self) -> usize {
+        (self.greatest >> fixed::SHIFT) as usize
+    }
+
+    /// The strips in which they lie, which may be above the band or beneath.
+    #[inline(always)]
+    fn first_strip(&self) -> i32 {
+        self.top >> STRIP_SHIFT
+    }
+
+    #[inline(always)]
+    fn last_strip(&self) -> i32 {
+        self.bottom >> STRIP_SHIFT
+    }
+
+    /// Whether all of them matters, as far as they are in the band.
+    #[inline(always)]
+    fn is_seen(&self, reaches: &[Reach]) -> bool {
+        let is_seen =
+            |strip: i32| reaches.get(strip as usize).is_none_or(|reach| reach.holds(self.least, self.greatest));
+        is_seen(self.first_strip()) && is_seen(self.last_strip())
     }
 }
 
@@ -167,6 +198,13 @@ impl Near {
 /// down.
 struct SmallAreas {
     columns: [[[i32; 8]; 2]; 3],
+}
+
+/// What is added to the row that follows: nothing where that is another strip's. Not a closure: those are not always inlined, and lose
+/// the SIMD level then.
+#[inline(always)]
+fn next_row<S: Simd>(simd: S, is_last: mask32x8<S>, lower: &[i32; 8]) -> [i32; 8] {
+    is_last.select(i32x8::splat(simd, 0), i32x8::load_array_ref(simd, lower)).to_array()
 }
 
 impl SmallAreas {
@@ -185,29 +223,56 @@ impl SmallAreas {
         Self { columns: [[a, d], [b, e], [c, f]] }
     }
 
-    /// Adds all of `edges`, which lie in columns `first ..= last` of a strip.
+    /// Adds all of `edges`. Rows above and below the band are left out.
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, strip: &mut Strip, eight: &Eight, edges: u32, first: usize, last: usize) {
-        strip.occupy(first, last + 1);
-        let Some(window) = strip.columns.get_mut(first..last + 3) else { return };
-        let column = (i32x8::load_array_ref(simd, &eight.least) >> fixed::SHIFT) - first as i32;
-        let row = (i32x8::load_array_ref(simd, &eight.start_y) >> fixed::SHIFT) & (BLOCK_HEIGHT as i32 - 1);
-        let (column, row) = (column.to_array(), row.to_array());
+    fn add<S: Simd>(&self, simd: S, cells: &mut Accumulator, eight: &Eight, edges: u32) {
+        const ROWS: i32 = BLOCK_HEIGHT as i32;
+        const SPAN: usize = 2 * BLOCK_HEIGHT + 2;
+        let stride = cells.stride() as i32;
+        let row = i32x8::load_array_ref(simd, &eight.start_y) >> fixed::SHIFT;
+        let column = i32x8::load_array_ref(simd, &eight.least) >> fixed::SHIFT;
+        let within = row & (ROWS - 1);
+        // Of their first cells. Outside of the band there is no such place, or it is negative, which no place is.
+        let places = (((row >> ROWS.ilog2()) * stride + column) * ROWS + within).to_array();
+        // The row beneath a strip's last is not the cell that follows.
+        let is_last = within.simd_eq(ROWS - 1);
+        let [[a, lower_a], [b, lower_b], [c, lower_c]] = &self.columns;
+        let d = next_row(simd, is_last, lower_a);
+        let e = next_row(simd, is_last, lower_b);
+        let f = next_row(simd, is_last, lower_c);
+        let cells = cells.cells();
         let mut left = edges;
         while left != 0 {
             let lane = left.trailing_zeros() as usize & 7;
             left &= left - 1;
-            let columns = window.get_mut(column[lane] as usize..).and_then(|rest| rest.first_chunk_mut::<3>());
-            let row = row[lane] as usize & (BLOCK_HEIGHT - 1);
-            if let Some(columns) = columns {
-                self.add_lane(columns, lane, row, (row + 1) & (BLOCK_HEIGHT - 1));
+            let place = places[lane] as usize;
+            let Some(cells) = cells.get_mut(place..).and_then(|rest| rest.first_chunk_mut::<SPAN>()) else { continue };
+            // Where there is no lower row, zeros are added: a branch would be wrong half of the time.
+            cells[0] = cells[0].wrapping_add(a[lane]);
+            cells[1] = cells[1].wrapping_add(d[lane]);
+            cells[BLOCK_HEIGHT] = cells[BLOCK_HEIGHT].wrapping_add(b[lane]);
+            cells[BLOCK_HEIGHT + 1] = cells[BLOCK_HEIGHT + 1].wrapping_add(e[lane]);
+            cells[2 * BLOCK_HEIGHT] = cells[2 * BLOCK_HEIGHT].wrapping_add(c[lane]);
+            cells[2 * BLOCK_HEIGHT + 1] = cells[2 * BLOCK_HEIGHT + 1].wrapping_add(f[lane]);
+        }
+        let mut across = edges & !eight.single;
+        while across != 0 {
+            let lane = across.trailing_zeros() as usize & 7;
+            across &= across - 1;
+            let place = (places[lane] + (stride - 1) * ROWS + 1) as usize;
+            if let Some(cells) = cells.get_mut(place..).and_then(|rest| rest.first_chunk_mut::<SPAN>()) {
+                for (column, value) in [lower_a, lower_b, lower_c].into_iter().enumerate() {
+                    let cell = &mut cells[column * BLOCK_HEIGHT];
+                    *cell = cell.wrapping_add(value[lane]);
+                }
             }
         }
     }
 
-    /// Adds an edge in a row and the one below. Where there is no lower row, zeros are added: a branch would be wrong half of the time.
+    /// Adds an edge of one strip in a row and the one below.
     #[inline(always)]
-    fn add_lane(&self, columns: &mut [Column; 3], lane: usize, row: usize, below: usize) {
+    fn add_lane(&self, columns: &mut [Column; 3], lane: usize, row: usize) {
+        let below = (row + 1) & (BLOCK_HEIGHT - 1);
         for (column, [upper, lower]) in columns.iter_mut().zip(&self.columns) {
             column.0[row] = column.0[row].wrapping_add(upper[lane]);
             column.0[below] = column.0[below].wrapping_add(lower[lane]);
@@ -261,22 +326,29 @@ fn add_tall_inner<S: Simd>(
         let strip_top = (index as i32) << STRIP_SHIFT;
         let to = crossings.at(simd, eight, strip_top + (1 << STRIP_SHIFT));
         let pieces = Pieces::new(simd, eight, &from, &to, strip_top);
-        let mut left = pieces.climbs & edges;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize & 7;
-            left &= left - 1;
-            let (first, last) = (pieces.first[lane] as usize, pieces.last[lane] as usize);
-            let height = pieces.height[lane];
-            let seen = reaches.get(index).is_none_or(|reach| reach.holds_columns(first, last));
-            if pieces.flat >> lane & 1 != 0 || !seen {
-                let y = top + strip_top + pieces.below[lane];
-                let (start, end) = ((from[lane], y), (to[lane], y + height));
-                add_strip_part(simd, cells, index, start, end, eight.slant(lane), top, reaches);
-            } else if let Some(strip) = cells.strip(index) {
-                let (below, start, slant) = (pieces.below[lane], pieces.start[lane], eight.slant(lane));
+        let (mut left, mut general) = (pieces.climbs & edges, 0_u32);
+        if let Some(mut strip) = cells.strip(index) {
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize & 7;
+                left &= left - 1;
+                let (first, last) = (pieces.first[lane] as usize, pieces.last[lane] as usize);
+                let seen = reaches.get(index).is_none_or(|reach| reach.holds_columns(first, last));
+                if pieces.flat >> lane & 1 != 0 || !seen {
+                    general |= 1 << lane;
+                    continue;
+                }
+                let (below, height) = (pieces.below[lane], pieces.height[lane]);
+                let (start, slant) = (pieces.start[lane], eight.slant(lane));
                 let parts = RowParts::of(simd, PieceLine { below, height, start, slant });
-                add_row_parts(simd, strip, parts, first, last);
+                add_row_parts(simd, &mut strip, parts, first, last);
             }
+        }
+        while general != 0 {
+            let lane = general.trailing_zeros() as usize & 7;
+            general &= general - 1;
+            let y = top + strip_top + pieces.below[lane];
+            let (start, end) = ((from[lane], y), (to[lane], y + pieces.height[lane]));
+            add_strip_part(simd, cells, index, start, end, eight.slant(lane), top, reaches);
         }
         from = to;
     }
@@ -368,8 +440,8 @@ fn add_single<S: Simd>(
     if is_flat(first, last, eight.height[lane]) {
         return false;
     }
-    if let Some(strip) = cells.strip(strip) {
-        add_row_parts(simd, strip, RowParts::of(simd, eight.line(lane)), first, last);
+    if let Some(mut strip) = cells.strip(strip) {
+        add_row_parts(simd, &mut strip, RowParts::of(simd, eight.line(lane)), first, last);
     }
     true
 }
@@ -410,7 +482,7 @@ struct Eight {
     /// Which of them are not horizontal, as bits, and which of these lie within one strip.
     climbs: u32,
     single: u32,
-    /// Which of the latter have at most two rows and two columns.
+    /// Which of the former have at most two rows and two columns.
     small: u32,
     /// Which of them reach into a second strip and are reckoned in one go all the same.
     across: u32,
@@ -454,7 +526,7 @@ impl Eight {
         Self {
             climbs: climbs.to_bitmask() as u32,
             single: (climbs & one_strip).to_bitmask() as u32,
-            small: (climbs & one_strip & small).to_bitmask() as u32,
+            small: (climbs & small).to_bitmask() as u32,
             across: across.to_bitmask() as u32 & !flat,
             tall: height.simd_gt(1 << STRIP_SHIFT).to_bitmask() as u32,
             start_x: start_x.to_array(),

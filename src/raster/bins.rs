@@ -1,7 +1,7 @@
 //! Edges listed by band.
 
-use fearless_simd::f32x8;
 use fearless_simd::prelude::*;
+use fearless_simd::{f32x8, i32x8};
 
 use super::bar::Bar;
 use super::cut::Cutter;
@@ -326,14 +326,14 @@ impl EdgeBins {
                 for polygon in polygons.iter() {
                     let start = points.len();
                     append_closed(simd, polygon, points);
-                    list_from(bands, points, start, first_top, *band_shift);
+                    list_from(simd, bands, points, start, first_top, *band_shift);
                 }
             }
             Outlines::Resolved => {
                 for piece in resolver.pieces() {
                     let start = points.len();
                     points.extend_from_slice(piece);
-                    list_from(bands, points, start, first_top, *band_shift);
+                    list_from(simd, bands, points, start, first_top, *band_shift);
                 }
             }
         }
@@ -435,29 +435,53 @@ fn close_item(band: &mut BandList) -> bool {
 /// Lists the edges between the points from `start` on for each of `bands` that they touch; the first band's top is
 /// at `first_top`.
 #[inline(always)]
-fn list_from(bands: &mut [BandList], points: &[FixedPoint], start: usize, first_top: i32, band_shift: u32) {
+fn list_from<S: Simd>(
+    simd: S,
+    bands: &mut [BandList],
+    points: &[FixedPoint],
+    start: usize,
+    first_top: i32,
+    band_shift: u32,
+) {
     if let [band] = bands {
         band.edges.extend(start as u32..(points.len() as u32).saturating_sub(1));
     } else {
-        list_by_band(bands, points, start, first_top, band_shift);
+        list_by_band(simd, bands, points, start, first_top, band_shift);
     }
 }
 
 /// As [`list_from`] for several bands.
 #[inline(always)]
-fn list_by_band(bands: &mut [BandList], points: &[FixedPoint], start: usize, first_top: i32, band_shift: u32) {
+fn list_by_band<S: Simd>(
+    simd: S,
+    bands: &mut [BandList],
+    points: &[FixedPoint],
+    start: usize,
+    first_top: i32,
+    band_shift: u32,
+) {
     let band_of = |y: i32| ((y - first_top) >> band_shift) as usize;
-    let Some(([first, ..], rest)) = points.get(start..).and_then(|points| points.split_first_chunk::<1>()) else {
+    let Some(([first, ..], mut rest)) = points.get(start..).and_then(|points| points.split_first_chunk::<1>()) else {
         return;
     };
     // Outlines stay in a band for a while: what lies between two changes is listed in one go.
-    let (mut run, mut band, mut last_y) = (start as u32, band_of(first.y), first.y);
+    let (mut run, mut end, mut band, mut last_y) = (start as u32, start as u32, band_of(first.y), first.y);
     let mut list = |band: usize, run: u32, end: u32| {
         if let Some(band) = bands.get_mut(band) {
             band.edges.extend(run..end);
         }
     };
-    for (end, point) in (start as u32..).zip(rest) {
+    loop {
+        while let Some((four, after)) = rest.split_first_chunk::<4>() {
+            let y = i32x8::load_array(simd, bytemuck::cast(*four));
+            // x, in every other lane, does not matter.
+            let here = ((y - first_top) >> band_shift).simd_eq(band as i32).to_bitmask() as u32 | 0x55;
+            if here != 0xff {
+                break;
+            }
+            (rest, end, last_y) = (after, end + 4, four[3].y);
+        }
+        let Some(([point], after)) = rest.split_first_chunk::<1>() else { break };
         let next = band_of(point.y);
         if next != band {
             list(band, run, end);
@@ -468,9 +492,9 @@ fn list_by_band(bands: &mut [BandList], points: &[FixedPoint], start: usize, fir
             }
             (run, band) = (end + 1, next);
         }
-        last_y = point.y;
+        (rest, end, last_y) = (after, end + 1, point.y);
     }
-    list(band, run, (start + rest.len()) as u32);
+    list(band, run, end);
 }
 
 /// The smallest and greatest x and y of some points, as left, top, right, bottom; `None` if there is no point, or one

@@ -13,25 +13,28 @@ use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH};
 pub(crate) const FULL: i32 = 1 << 17;
 
 /// A column of a strip: one value per row. Aligned, so that no vector of it straddles two cache lines.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub(crate) struct Column(pub(crate) [i32; BLOCK_HEIGHT]);
 
-/// Accumulators of the strips of one band; zero between draws.
+/// Accumulators of the strips of one band, one after another; zero between draws.
 #[derive(Debug, Default)]
 pub(crate) struct Accumulator {
-    strips: Vec<Strip>,
+    /// Of each strip the band's columns, rounded up to blocks, and one block to spill into.
+    columns: Vec<Column>,
+    /// Of each strip one bit for each block of 16 columns that may hold values.
+    occupied: Vec<Vec<u64>>,
+    /// How many columns a strip has.
+    stride: usize,
+    /// Sums of more edges than `columns` can hold; empty but while a crowd of edges is added.
+    wide: Vec<[i64; BLOCK_HEIGHT]>,
 }
 
 /// The accumulator of one strip.
-#[derive(Debug, Default)]
-pub(crate) struct Strip {
-    /// The band's columns, rounded up to blocks, and one block to spill into.
-    pub(crate) columns: Vec<Column>,
-    /// One bit for each block of 16 columns that may hold values.
-    pub(crate) occupied: Vec<u64>,
-    /// Sums of more edges than `columns` can hold; empty but while a crowd of edges is added.
-    pub(super) wide: Vec<[i64; BLOCK_HEIGHT]>,
+#[derive(Debug)]
+pub(crate) struct Strip<'a> {
+    pub(crate) columns: &'a mut [Column],
+    pub(crate) occupied: &'a mut [u64],
 }
 
 impl Accumulator {
@@ -39,26 +42,26 @@ impl Accumulator {
     /// [`sweep`](super::sweep) leaves them.
     pub(crate) fn resize(&mut self, width: usize, strips: usize) {
         let blocks = width.div_ceil(BLOCK_WIDTH) + 1;
-        self.strips.resize_with(strips, Strip::default);
-        for strip in &mut self.strips {
-            strip.columns.resize(blocks * BLOCK_WIDTH, Column::default());
-            strip.occupied.resize(blocks.div_ceil(64), 0);
+        self.stride = blocks * BLOCK_WIDTH;
+        self.columns.resize(self.stride * strips, Column::default());
+        self.occupied.resize_with(strips, Vec::new);
+        for words in &mut self.occupied {
+            words.resize(blocks.div_ceil(64), 0);
         }
     }
 
     /// Whether some block of strip `index` is occupied.
     pub(crate) fn is_occupied(&self, index: usize) -> bool {
-        self.strips.get(index).is_some_and(|strip| strip.occupied.iter().any(|word| *word != 0))
+        self.occupied.get(index).is_some_and(|words| words.iter().any(|word| *word != 0))
     }
 
     /// Moves all values to where there is room for any number of them.
     pub(super) fn set_aside(&mut self) {
-        for Strip { columns, wide, .. } in &mut self.strips {
-            wide.resize(columns.len(), [0; BLOCK_HEIGHT]);
-            for (wide, column) in wide.iter_mut().zip(columns) {
-                for (wide, value) in wide.iter_mut().zip(&mut column.0) {
-                    *wide += i64::from(std::mem::take(value));
-                }
+        let Self { columns, wide, .. } = self;
+        wide.resize(columns.len(), [0; BLOCK_HEIGHT]);
+        for (wide, column) in wide.iter_mut().zip(columns) {
+            for (wide, value) in wide.iter_mut().zip(&mut column.0) {
+                *wide += i64::from(std::mem::take(value));
             }
         }
     }
@@ -67,7 +70,8 @@ impl Accumulator {
     /// the same. What was set aside stays until [`forget`](Self::forget).
     pub(super) fn bring_back(&mut self, rule: FillRule) {
         let full = i64::from(FULL);
-        for Strip { columns, wide, .. } in &mut self.strips {
+        let stride = self.stride.max(1);
+        for (columns, wide) in self.columns.chunks_mut(stride).zip(self.wide.chunks(stride)) {
             let (mut sum, mut before) = ([0_i64; BLOCK_HEIGHT], [0_i64; BLOCK_HEIGHT]);
             for (column, wide) in columns.iter_mut().zip(wide) {
                 for (((value, wide), sum), before) in column.0.iter_mut().zip(wide).zip(&mut sum).zip(&mut before) {
@@ -85,24 +89,61 @@ impl Accumulator {
 
     /// Drops what was set aside.
     pub(crate) fn forget(&mut self) {
-        self.strips.iter_mut().for_each(|strip| strip.wide.clear());
+        self.wide.clear();
+    }
+
+    /// How many columns a strip has.
+    #[inline(always)]
+    pub(super) fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// Whether all strips have that column, and places among [`cells`](Self::cells) are numbers of 32 bits.
+    #[inline(always)]
+    pub(super) fn holds(&self, column: usize) -> bool {
+        column < self.stride && self.columns.len() <= i32::MAX as usize / BLOCK_HEIGHT
+    }
+
+    /// All values: the eight rows of a column, column after column, strip after strip.
+    #[inline(always)]
+    pub(super) fn cells(&mut self) -> &mut [i32] {
+        bytemuck::cast_slice_mut(&mut self.columns)
+    }
+
+    /// Marks the blocks that hold columns `first ..= last` of a strip as occupied, if the band has it.
+    #[inline(always)]
+    pub(super) fn occupy(&mut self, strip: i32, first: usize, last: usize) {
+        let Ok(index) = usize::try_from(strip) else { return };
+        let (first_block, last_block) = (first / BLOCK_WIDTH, last / BLOCK_WIDTH);
+        if first_block / 64 != last_block / 64 {
+            if let Some(mut strip) = self.strip(index) {
+                strip.occupy(first, last);
+            }
+        } else if let Some(word) = self.occupied.get_mut(index).and_then(|words| words.get_mut(first_block / 64)) {
+            *word |= (u64::MAX << (first_block % 64)) & (u64::MAX >> (63 - last_block % 64));
+        }
     }
 
     /// The accumulators of strip `index` and the next.
     #[inline(always)]
-    pub(super) fn pair(&mut self, index: usize) -> Option<[&mut Strip; 2]> {
-        let [upper, lower] = self.strips.get_mut(index..)?.first_chunk_mut::<2>()?;
-        Some([upper, lower])
+    pub(super) fn pair(&mut self, index: usize) -> Option<[Strip<'_>; 2]> {
+        let columns = self.columns.get_mut(index.wrapping_mul(self.stride)..)?;
+        let (above, rest) = columns.split_at_mut_checked(self.stride)?;
+        let below = rest.get_mut(..self.stride)?;
+        let [first, second] = self.occupied.get_mut(index..)?.first_chunk_mut::<2>()?;
+        Some([Strip { columns: above, occupied: first }, Strip { columns: below, occupied: second }])
     }
 
     /// The accumulator of strip `index`, or `None` past the last.
     #[inline(always)]
-    pub(crate) fn strip(&mut self, index: usize) -> Option<&mut Strip> {
-        self.strips.get_mut(index)
+    pub(crate) fn strip(&mut self, index: usize) -> Option<Strip<'_>> {
+        let occupied = self.occupied.get_mut(index)?;
+        let columns = self.columns.get_mut(index.wrapping_mul(self.stride)..)?.get_mut(..self.stride)?;
+        Some(Strip { columns, occupied })
     }
 }
 
-impl Strip {
+impl Strip<'_> {
     /// Three columns from `first` on.
     #[inline(always)]
     pub(super) fn three(&mut self, first: usize) -> Option<&mut [Column; 3]> {

@@ -172,15 +172,16 @@ pub(super) fn add_across<S: Simd>(
     let upper = RowParts::tops(simd).simd_ge(whole_rows);
     let is_seen = |strip: i32| reaches.get(strip as usize).is_none_or(|reach| reach.holds(least, greatest));
     if strip >= 0 && (strip + 1) < strips as i32 && is_seen(strip) && is_seen(strip + 1) {
-        if let Some(pair) = cells.pair(strip as usize) {
-            add_parts_across(simd, pair, upper, parts, first, last);
+        if let Some(mut pair) = cells.pair(strip as usize) {
+            let [above, below] = &mut pair;
+            add_parts_across(simd, [above, below], upper, parts, first, last);
         }
         return;
     }
     for (index, rows) in [(strip, upper), (strip + 1, !upper)] {
         // Above the band the strip is negative, which no index is.
         let index = index as usize;
-        let Some(strip) = cells.strip(index).filter(|_| index < strips) else { continue };
+        let Some(mut strip) = cells.strip(index).filter(|_| index < strips) else { continue };
         let parts = parts.only(simd, rows);
         match reaches.get(index) {
             Some(reach) if reach.ends_before(least) => {}
@@ -191,7 +192,7 @@ pub(super) fn add_across<S: Simd>(
                     add_to(simd, column, parts.total);
                 }
             }
-            _ => add_row_parts(simd, strip, parts, first, last),
+            _ => add_row_parts(simd, &mut strip, parts, first, last),
         }
     }
 }
@@ -200,7 +201,7 @@ pub(super) fn add_across<S: Simd>(
 #[inline(always)]
 fn add_parts_across<S: Simd>(
     simd: S,
-    [above, below]: [&mut Strip; 2],
+    [above, below]: [&mut Strip<'_>; 2],
     upper: mask32x8<S>,
     row: RowParts<S>,
     first: usize,
@@ -284,8 +285,8 @@ pub(super) fn add_strip_part<S: Simd>(
             slant = slant.upright();
         }
     }
-    if let Some(strip) = cells.strip(index) {
-        add_piece(simd, strip, start, end, slant, top + ((index as i32) << STRIP_SHIFT));
+    if let Some(mut strip) = cells.strip(index) {
+        add_piece(simd, &mut strip, start, end, slant, top + ((index as i32) << STRIP_SHIFT));
     }
 }
 
@@ -294,7 +295,7 @@ pub(super) fn add_strip_part<S: Simd>(
 #[inline(always)]
 fn add_piece<S: Simd>(
     simd: S,
-    cells: &mut Strip,
+    cells: &mut Strip<'_>,
     (start_x, start_y): (i32, i32),
     (end_x, end_y): (i32, i32),
     slant: Slant,
@@ -313,7 +314,7 @@ fn add_piece<S: Simd>(
 
 /// Adds parts that lie in columns `first ..= last`.
 #[inline(always)]
-pub(super) fn add_row_parts<S: Simd>(simd: S, cells: &mut Strip, row: RowParts<S>, first: usize, last: usize) {
+pub(super) fn add_row_parts<S: Simd>(simd: S, cells: &mut Strip<'_>, row: RowParts<S>, first: usize, last: usize) {
     if last - first <= 1 {
         cells.occupy_pair(first, last + 1);
         if let Some(columns) = cells.three(first) {
@@ -553,7 +554,7 @@ impl<S: Simd> ColumnWalk<S> {
     }
 }
 
-impl Strip {
+impl Strip<'_> {
     /// Adds a piece of an edge that lies within one row: from x0 to x1 (either order), climbing `dy` (0 ..= 256,
     /// times the winding). The way very flat edges go; the kernel's formula, in plain `f64`.
     pub(crate) fn add_row_piece(&mut self, row: usize, x0: i32, x1: i32, dy: i32) {
@@ -592,7 +593,7 @@ impl Strip {
 
 /// Adds a flat piece row by row.
 #[inline(never)]
-fn add_flat(cells: &mut Strip, start_x: i32, start_y: i32, end_x: i32, end_y: i32, top: i32, winding: i32) {
+fn add_flat(cells: &mut Strip<'_>, start_x: i32, start_y: i32, end_x: i32, end_y: i32, top: i32, winding: i32) {
     let line = EdgeLine::new(start_x, start_y, end_x, end_y);
     let (mut x, mut y) = (start_x, start_y);
     while y < end_y {

@@ -132,10 +132,10 @@ pub(crate) fn add_round_rect<S: Simd>(
             let (first, end) = reach.to_columns();
             (low, high) = (low.max(first), high.min(end));
         }
-        let Some(strip) = cells.strip(index as usize) else { continue };
+        let Some(mut strip) = cells.strip(index as usize) else { continue };
         let (from, to) = (from.max(strip_top), to.min(strip_top + (1 << STRIP_SHIFT)));
         if low < high {
-            StripPart { shape, strip_top, from, to, low, high }.add(simd, strip);
+            StripPart { shape, strip_top, from, to, low, high }.add(simd, &mut strip);
         }
     }
 }
@@ -152,7 +152,7 @@ struct StripPart<'a> {
 
 impl StripPart<'_> {
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, strip: &mut Strip) {
+    fn add<S: Simd>(&self, simd: S, strip: &mut Strip<'_>) {
         let FixedRect { top, bottom, .. } = self.shape.rect;
         // Rows less than one deep, and the one in which that ends, go by columns.
         let upper_end = (top + 2 * fixed::ONE - 1) >> fixed::SHIFT << fixed::SHIFT;
@@ -171,7 +171,7 @@ impl StripPart<'_> {
 
     /// Adds both sides between two scanlines.
     #[inline(always)]
-    fn add_sides<S: Simd>(&self, simd: S, strip: &mut Strip, from: i32, to: i32) {
+    fn add_sides<S: Simd>(&self, simd: S, strip: &mut Strip<'_>, from: i32, to: i32) {
         let FixedRect { left, right, .. } = self.shape.rect;
         let arc = Arc::new(self.shape.radius_x, self.shape.radius_y);
         let (least, greatest) = (i32x8::splat(simd, from), i32x8::splat(simd, to));
@@ -206,7 +206,14 @@ impl StripPart<'_> {
 
     /// Adds one of them, which lies between two x from `base` on.
     #[inline(always)]
-    fn add_side<S: Simd>(&self, simd: S, strip: &mut Strip, base: i32, (least, greatest): (f32, f32), side: Side<S>) {
+    fn add_side<S: Simd>(
+        &self,
+        simd: S,
+        strip: &mut Strip<'_>,
+        base: i32,
+        (least, greatest): (f32, f32),
+        side: Side<S>,
+    ) {
         let column_of = |x: f32| (base + x as i32 - i32::from(x < x as i32 as f32)) >> fixed::SHIFT;
         let (first, last) = (column_of(least), column_of(greatest));
         if first >= self.high || last < self.low {
@@ -243,7 +250,7 @@ impl StripPart<'_> {
 
     /// Adds the rows between two scanlines, two at most, by columns; `depth` is how far from the tip a scanline is.
     #[inline(always)]
-    fn add_cap<S: Simd>(&self, simd: S, strip: &mut Strip, (from, to): (i32, i32), depth: impl Fn(i32) -> i32) {
+    fn add_cap<S: Simd>(&self, simd: S, strip: &mut Strip<'_>, (from, to): (i32, i32), depth: impl Fn(i32) -> i32) {
         if from >= to {
             return;
         }
@@ -271,7 +278,7 @@ impl StripPart<'_> {
         let row = row as usize & (BLOCK_HEIGHT - 1);
         let below = (row + 1) & (BLOCK_HEIGHT - 1);
         let mut before = [0; 2];
-        let mut add = |strip: &mut Strip, column: i32, area: [i32; 2]| {
+        let mut add = |strip: &mut Strip<'_>, column: i32, area: [i32; 2]| {
             if let Some(Column(cells)) = strip.columns.get_mut(column as usize) {
                 cells[row] = cells[row].wrapping_add(area[0] - before[0]);
                 cells[below] = cells[below].wrapping_add(area[1] - before[1]);
@@ -434,7 +441,7 @@ mod tests {
             }
             for lane in 0..8 {
                 let mut sum = 0;
-                for (value, column) in rows[index * 8 + lane].iter_mut().zip(&strip.columns) {
+                for (value, column) in rows[index * 8 + lane].iter_mut().zip(strip.columns.iter()) {
                     sum += column.0[lane];
                     *value = sum;
                 }

@@ -18,7 +18,7 @@ pub(crate) struct SampleScratch {
 /// inside is to its right (or, on a vertex, below it): along each sample row an edge takes part for
 /// y0 ≤ y < y1, and its crossing belongs to the samples at and right of it.
 pub(crate) fn add_samples(
-    cells: &mut Strip,
+    cells: &mut Strip<'_>,
     edges: &[Edge],
     top: i32,
     grid: u8,
@@ -84,7 +84,7 @@ pub(crate) fn inside(winding: i32, rule: FillRule) -> bool {
 }
 
 /// Adds the samples `start..end` of a sample row to pixel row `row`, n samples a pixel.
-pub(crate) fn add_span(cells: &mut Strip, row: usize, start: i32, end: i32, n: i32) {
+pub(crate) fn add_span(cells: &mut Strip<'_>, row: usize, start: i32, end: i32, n: i32) {
     let columns = cells.columns.len() as i32;
     let (start, end) = (start.max(0), end.min((columns - 1) * n));
     if start >= end {

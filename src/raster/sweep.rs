@@ -45,7 +45,7 @@ pub(crate) trait BlockSink<S: Simd> {
 #[inline(always)]
 pub(crate) fn sweep<S: Simd, K: BlockSink<S>>(
     simd: S,
-    cells: &mut Strip,
+    cells: &mut Strip<'_>,
     blocks: usize,
     rule: CoverageRule,
     sink: &mut K,
@@ -84,7 +84,7 @@ pub(crate) fn sweep<S: Simd, K: BlockSink<S>>(
 #[inline(always)]
 fn sweep_with<S: Simd, K: BlockSink<S>>(
     simd: S,
-    cells: &mut Strip,
+    cells: &mut Strip<'_>,
     blocks: usize,
     sink: &mut K,
     coverage: impl Fn(i32x8<S>, i32x8<S>) -> u16x16<S>,
@@ -420,7 +420,7 @@ mod tests {
                         let edge = Edge { x0: x, y0, x1: x, y1 };
                         add_edge(simd, &mut cells, edge, 0, 1, &[]);
                     }
-                    sweep(simd, cells.strip(0).unwrap(), BLOCKS, CoverageRule::NonZero, &mut swept);
+                    sweep(simd, &mut cells.strip(0).unwrap(), BLOCKS, CoverageRule::NonZero, &mut swept);
                     sweep_rect(simd, rect, 0, BLOCKS, &mut direct);
                 });
                 assert_eq!(swept.0, direct.0, "{rect:?} at {level:?}");

@@ -55,8 +55,8 @@ impl Coverage {
     ) {
         match self {
             Self::Cells(rule) => {
-                if let Some(cells) = cells.strip(strip) {
-                    sweep(simd, cells, end, rule, sink);
+                if let Some(mut cells) = cells.strip(strip) {
+                    sweep(simd, &mut cells, end, rule, sink);
                 }
             }
             Self::Rect(rect) => sweep_rect(simd, rect, frame.strip_top(strip) << fixed::SHIFT, end, sink),
@@ -149,9 +149,9 @@ fn accumulate_inner<S: Simd>(
     };
     let edges = &*listed(&mut scratch.edges, edges);
     for strip in 0..frame.strips {
-        if let Some(cells) = scratch.cells.strip(strip) {
+        if let Some(mut cells) = scratch.cells.strip(strip) {
             let strip_top = frame.strip_top(strip) << fixed::SHIFT;
-            sample::add_samples(cells, edges, strip_top, grid, rule, &mut scratch.sample);
+            sample::add_samples(&mut cells, edges, strip_top, grid, rule, &mut scratch.sample);
         }
     }
     Coverage::Cells(CoverageRule::Samples(u16::from(grid) * u16::from(grid)))
@@ -192,7 +192,7 @@ fn add_spans(frame: &Frame<'_>, cells: &mut Accumulator, spans: &[Span]) {
     let end = spans.partition_point(|span| span.y < frame.top + frame.rows as i32);
     for span in spans.get(first..end).unwrap_or(&[]) {
         let row = (span.y - frame.top) as usize;
-        let Some(strip) = cells.strip(row / BLOCK_HEIGHT) else { continue };
+        let Some(mut strip) = cells.strip(row / BLOCK_HEIGHT) else { continue };
         let limit = (frame.blocks * BLOCK_WIDTH) as i32;
         let (start, end) = (span.start.clamp(0, limit), span.end.clamp(0, limit));
         if start < end {
