@@ -10,7 +10,7 @@ use fearless_simd::{f32x8, i32x8};
 
 use super::batch::coordinates;
 use super::edge::FixedPoint;
-use crate::num::lanes::{max_i32, min_i32};
+use crate::num::lanes::{least_of_each, max_i32, min_i32};
 
 /// A box with its sides.
 #[derive(Clone, Copy, Debug)]
@@ -311,12 +311,9 @@ impl Node {
             (left, top) = (is_one.select(left, high), is_one.select(top, high));
             (right, bottom) = (is_one.select(right, low), is_one.select(bottom, low));
         }
-        let around = Bounds {
-            left: left.reduce_min(),
-            top: top.reduce_min(),
-            right: right.reduce_max(),
-            bottom: bottom.reduce_max(),
-        };
+        // The greatest is the least of what all bits are turned around of.
+        let [least_x, least_y, greatest_x, greatest_y] = least_of_each([left, top, !right, !bottom]);
+        let around = Bounds { left: least_x, top: least_y, right: !greatest_x, bottom: !greatest_y };
         let (left, top, right, bottom) = (left.to_array(), top.to_array(), right.to_array(), bottom.to_array());
         let ordered = if is_ordered { 0xff } else { 0 };
         (Self { left, top, right, bottom, around, first, outline, ways: 0, is_ordered, ordered }, have_length)
