@@ -343,8 +343,9 @@ fn time_and_memory_have_limits() {
 /// and not a word.
 #[cfg(target_os = "linux")]
 fn assert_drawn_within(name: &str, side: u32, bytes: u32, content: &str) {
-    // The program, its libraries, the encoder and stacks take some 92 MiB of addresses, and less than 40 MiB of memory.
-    let mebibytes = 64 + 92 + bytes.div_ceil(1 << 20);
+    // The program, its libraries, the encoder and stacks take some 93 MiB of addresses, of which 20 are its code as tests build it, and less than 40 MiB of
+    // memory.
+    let mebibytes = 64 + 96 + bytes.div_ceil(1 << 20);
     let folder = Folder::new();
     let text = svg(content).replace("width='64' height='64'", &format!("width='{side}' height='{side}'"));
     fs::write(folder.0.join("a.svg"), text).unwrap();
