@@ -152,7 +152,7 @@ fn an_aliased_hairline_is_bresenhams() {
     assert_eq!(set(&picture), line::bresenham((0, 0), (10, 6)).collect());
 }
 
-// Hit tests
+// Lines
 
 /// Lines of all directions and widths, some of which leave a canvas of 64 × 48.
 fn lines(mut draw: impl FnMut(Point, Point, &Stroke)) {
@@ -165,6 +165,8 @@ fn lines(mut draw: impl FnMut(Point, Point, &Stroke)) {
         } else {
             Point::new(within(-20, 84), within(-20, 68))
         };
+        // Some along an axis.
+        let to = if index % 8 == 5 { Point::new(to.x, from.y) } else { to };
         draw(from, to, &Stroke::new(within(0, 5)));
     }
 }
@@ -219,6 +221,8 @@ fn a_line_is_cut_at_the_canvas_and_at_clips_of_whole_pixels() {
         }
     });
 }
+
+// Hit tests
 
 #[test]
 fn hits_are_where_a_drawing_covers_pixel_centres() {
