@@ -1,11 +1,10 @@
 //! Masks and whole layers scaled by masks and opacities.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{u8x16, u8x32, u16x8, u16x16};
+use fearless_simd::{u8x16, u8x64, u16x8, u16x16};
 
-use super::over::scale;
-use super::words::{Words, div255};
-use crate::num::lanes::doubled_words;
+use super::words::{RowWords, div255};
+use crate::num::lanes::doubled_row;
 use crate::surface::block::{MaskBlock, PixelBlock};
 
 /// mask ← mask·by / 255, rounded to nearest: one coverage inside another.
@@ -33,11 +32,8 @@ pub(crate) fn multiply_block_by_mask<S: Simd>(simd: S, pixels: &mut PixelBlock, 
 /// [`multiply_block_by_mask`] for one row.
 #[inline(always)]
 pub(crate) fn multiply_row_by_mask<S: Simd>(simd: S, row: &mut [u8; 64], mask: &[u8; 16]) {
-    let masks = doubled_words(simd, mask);
-    for (pixels, mask) in row.as_chunks_mut::<32>().0.iter_mut().zip(masks) {
-        let words = Words::from_bytes(u8x32::load_array_ref(simd, pixels));
-        scale(words, mask).to_bytes().store_array(pixels);
-    }
+    let words = RowWords::from_bytes(u8x64::load_array_ref(simd, row)).times(doubled_row(simd, mask));
+    words.quotients_255().to_bytes().store_array(row);
 }
 
 /// Sixteen bytes as words: the even ones, then the odd ones.

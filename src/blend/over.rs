@@ -13,32 +13,18 @@
 //! had 2.0 | 1.1.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{u8x32, u16x16, u32x8};
+use fearless_simd::{u8x32, u8x64, u16x16, u16x32, u32x8, u32x16};
 
-use super::words::{Words, duplicate_odd, min_u8, mix, quotient_255};
-use crate::num::lanes::doubled_words;
+use super::words::{RowWords, Words, min_u8, quotient_255, row_quotient_255};
+use crate::num::lanes::doubled_row;
 
 /// `color` (premultiplied) over 16 pixels by `mask`. Components above the colour's alpha are lowered to it.
 #[inline(always)]
 pub(crate) fn over_solid_row<S: Simd>(simd: S, row: &mut [u8; 64], color: [u8; 4], mask: &[u8; 16]) {
-    let source = solid(simd, color);
-    let alpha = u16x16::splat(simd, u16::from(color[3]));
-    let masks = doubled_words(simd, mask);
-    over_halves(
-        simd,
-        row,
-        masks,
-        #[inline(always)]
-        |_, below, mask| {
-            // 255 − ⌊v / 255 + ½⌋ = ⌊(255² − v) / 255 + ½⌋, since 255 is odd and nothing lies halfway.
-            let rest = quotient_255(u16x16::splat(simd, 255 * 255 + 128) - alpha * mask);
-            Words {
-                even: quotient_255(source.even * mask + below.even * rest + 128),
-                odd: quotient_255(source.odd * mask + below.odd * rest + 128),
-            }
-            .to_bytes()
-        },
-    );
+    let mask = doubled_row(simd, mask);
+    // 255 − ⌊v / 255 + ½⌋ = ⌊(255² − v) / 255 + ½⌋, since 255 is odd and nothing lies halfway.
+    let rest = row_quotient_255(u16x32::splat(simd, 255 * 255 + 128) - mask * u16::from(color[3]));
+    over(simd, row, solid_row(simd, color).times(mask), rest);
 }
 
 /// [`over_solid_row`] for an opaque colour, faster: the alpha of `color` is taken to be 255.
@@ -50,58 +36,33 @@ pub(crate) fn over_opaque_row<S: Simd>(simd: S, row: &mut [u8; 64], color: [u8; 
 /// An opaque colour by a mask, made ready once for rows that share both.
 #[derive(Clone, Copy)]
 pub(crate) struct OpaqueRow<S: Simd> {
-    /// Of each half of the row, what the colour adds, with the half that rounds.
-    added: [Words<S>; 2],
+    /// What the colour adds, with the half that rounds.
+    added: RowWords<S>,
     /// How much of what is below stays.
-    rest: [u16x16<S>; 2],
+    rest: u16x32<S>,
 }
 
 impl<S: Simd> OpaqueRow<S> {
     /// The alpha of `color` is taken to be 255.
     #[inline(always)]
     pub(crate) fn new(simd: S, [r, g, b, _]: [u8; 4], mask: &[u8; 16]) -> Self {
-        let source = solid(simd, [r, g, b, 255]);
-        let [low, high] = doubled_words(simd, mask);
-        let (low_added, high_added) = (source.times(low), source.times(high));
-        Self { added: [low_added, high_added], rest: [low ^ 255, high ^ 255] }
+        let mask = doubled_row(simd, mask);
+        Self { added: solid_row(simd, [r, g, b, 255]).times(mask), rest: mask ^ 255 }
     }
 
     /// Puts it over 16 pixels.
     #[inline(always)]
     pub(crate) fn over(&self, simd: S, row: &mut [u8; 64]) {
-        let [low, high] = self.added;
-        over_halves(
-            simd,
-            row,
-            self.rest,
-            #[inline(always)]
-            |half, below, rest| {
-                let added = if half == 0 { low } else { high };
-                Words {
-                    even: quotient_255(below.even * rest + added.even),
-                    odd: quotient_255(below.odd * rest + added.odd),
-                }
-                .to_bytes()
-            },
-        );
+        over(simd, row, self.added, self.rest);
     }
 }
 
 /// [`over_solid_row`] with mask 255 throughout. For an opaque colour this is a fill: write it instead.
 #[inline(always)]
 pub(crate) fn over_solid_full<S: Simd>(simd: S, row: &mut [u8; 64], color: [u8; 4]) {
-    let source = solid(simd, color).to_bytes();
-    let rest = u16x16::splat(simd, u16::from(255 - color[3]));
-    over_halves(
-        simd,
-        row,
-        [rest; 2],
-        #[inline(always)]
-        |_, below, rest| {
-            // No component exceeds its alpha, so the sum stays below 256.
-            source + scale(below, rest).to_bytes()
-        },
-    );
+    // Multiples of 255 go through the division unchanged: to add before it is one addition less.
+    let added = solid_row(simd, color).times(u16x32::splat(simd, 255));
+    over(simd, row, added, u16x32::splat(simd, u16::from(255 - color[3])));
 }
 
 /// One colour, made ready to be put over runs of eight pixels by their coverage: to the same bytes as [`over_solid_row`].
@@ -139,77 +100,43 @@ impl<S: Simd> SolidRun<S> {
 /// sum saturates at 255.
 #[inline(always)]
 pub(crate) fn over_pixels_row<S: Simd>(simd: S, dst: &mut [u8; 64], src: &[u8; 64], mask: &[u8; 16]) {
-    let src = src.as_chunks::<32>().0;
-    let masks = doubled_words(simd, mask);
-    over_halves(
-        simd,
-        dst,
-        masks,
-        #[inline(always)]
-        |half, below, mask| {
-            let Some(src) = src.get(half) else { return below.to_bytes() };
-            let source = Words::from_bytes(u8x32::load_array_ref(simd, src));
-            let (even, odd) = (source.even * mask, source.odd * mask);
-            let rest = duplicate_odd(quotient_255(odd + 128)) ^ 255;
-            // Raised by 255, the largest sum that divides to 255 is the largest that a lane holds.
-            Words {
-                even: quotient_255(even.saturating_add(below.even * rest + (128 + 255)) - 255),
-                odd: quotient_255(odd.saturating_add(below.odd * rest + (128 + 255)) - 255),
-            }
-            .to_bytes()
-        },
-    );
+    let mask = doubled_row(simd, mask);
+    let source = RowWords::from_bytes(u8x64::load_array_ref(simd, src));
+    let below = RowWords::from_bytes(u8x64::load_array_ref(simd, dst));
+    let added = RowWords { even: source.even * mask, odd: source.odd * mask };
+    let rest = RowWords { even: added.even, odd: row_quotient_255(added.odd + 128) }.alpha() ^ 255;
+    // Raised by 255, the largest sum that divides to 255 is the largest that a lane holds.
+    RowWords {
+        even: row_quotient_255(added.even.saturating_add(below.even * rest + (128 + 255)) - 255),
+        odd: row_quotient_255(added.odd.saturating_add(below.odd * rest + (128 + 255)) - 255),
+    }
+    .to_bytes()
+    .store_array(dst);
 }
 
 /// [`over_pixels_row`] with mask 255 throughout.
 #[inline(always)]
 pub(crate) fn over_pixels_full<S: Simd>(simd: S, dst: &mut [u8; 64], src: &[u8; 64]) {
-    let src = src.as_chunks::<32>().0;
-    let unused = [u16x16::splat(simd, 255); 2];
-    over_halves(
-        simd,
-        dst,
-        unused,
-        #[inline(always)]
-        |half, below, _| {
-            let Some(src) = src.get(half) else { return below.to_bytes() };
-            let source = u8x32::load_array_ref(simd, src);
-            let rest = Words::from_bytes(source).alpha() ^ 255;
-            source.saturating_add(scale(below, rest).to_bytes())
-        },
-    );
+    let source = u8x64::load_array_ref(simd, src);
+    let rest = RowWords::from_bytes(source).alpha() ^ 255;
+    let below = RowWords::from_bytes(u8x64::load_array_ref(simd, dst)).times(rest);
+    source.saturating_add(below.quotients_255().to_bytes()).store_array(dst);
 }
 
 /// 16 pixels mixed into 16 others by `mask`, rounded once: `BlendMode::Source`; also
 /// [`over_pixels_row`], faster and to the same bytes, where every source pixel is opaque.
 #[inline(always)]
 pub(crate) fn mix_pixels_row<S: Simd>(simd: S, dst: &mut [u8; 64], src: &[u8; 64], mask: &[u8; 16]) {
-    let src = src.as_chunks::<32>().0;
-    let masks = doubled_words(simd, mask);
-    over_halves(
-        simd,
-        dst,
-        masks,
-        #[inline(always)]
-        |half, below, mask| {
-            let Some(src) = src.get(half) else { return below.to_bytes() };
-            mix(below, Words::from_bytes(u8x32::load_array_ref(simd, src)), mask).to_bytes()
-        },
-    );
+    let mask = doubled_row(simd, mask);
+    over(simd, dst, RowWords::from_bytes(u8x64::load_array_ref(simd, src)).times(mask), mask ^ 255);
 }
 
-/// Replaces both halves of a row by `blend(half, pixels, mask)`. A loop, which AVX2 code unrolls, and which
-/// keeps the scalar level's functions at a size that compilers still get through.
+/// Replaces 16 pixels by `rest` / 255 of themselves and what is `added`, which is 255 times as much and 128.
 #[inline(always)]
-fn over_halves<S: Simd>(
-    simd: S,
-    row: &mut [u8; 64],
-    masks: [u16x16<S>; 2],
-    blend: impl Fn(usize, Words<S>, u16x16<S>) -> u8x32<S>,
-) {
-    for (half, (pixels, mask)) in row.as_chunks_mut::<32>().0.iter_mut().zip(masks).enumerate() {
-        blend(half, Words::from_bytes(u8x32::load_array_ref(simd, pixels)), mask).store_array(pixels);
-    }
+fn over<S: Simd>(simd: S, row: &mut [u8; 64], added: RowWords<S>, rest: u16x32<S>) {
+    let below = RowWords::from_bytes(u8x64::load_array_ref(simd, row));
+    let sum = RowWords { even: below.even * rest + added.even, odd: below.odd * rest + added.odd };
+    sum.quotients_255().to_bytes().store_array(row);
 }
 
 /// Eight times the colour, components above its alpha lowered to it.
@@ -219,10 +146,11 @@ fn solid<S: Simd>(simd: S, color: [u8; 4]) -> Words<S> {
     Words::from_bytes(min_u8(u32x8::splat(simd, u32::from_le_bytes(color)).bitcast(), alpha))
 }
 
-/// Every component times `by` / 255, rounded.
+/// Sixteen times the colour, components above its alpha lowered to it.
 #[inline(always)]
-pub(super) fn scale<S: Simd>(pixels: Words<S>, by: u16x16<S>) -> Words<S> {
-    Words { even: quotient_255(pixels.even * by + 128), odd: quotient_255(pixels.odd * by + 128) }
+fn solid_row<S: Simd>(simd: S, [r, g, b, a]: [u8; 4]) -> RowWords<S> {
+    let color = [r.min(a), g.min(a), b.min(a), a];
+    RowWords::from_bytes(u32x16::splat(simd, u32::from_le_bytes(color)).bitcast())
 }
 
 #[cfg(test)]

@@ -4,11 +4,10 @@
 //! Level 1, section 9. Each operator is a numerator over 255, at most 255², that is rounded once.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{u8x32, u16x16, u32x8};
+use fearless_simd::{u8x64, u16x16, u32x8};
 
-use super::over::scale;
-use super::words::{Words, clamped, div255, mix_block};
-use crate::num::lanes::doubled_words;
+use super::words::{RowWords, Words, clamped, div255, mix_block};
+use crate::num::lanes::doubled_row;
 use crate::surface::block::{MaskBlock, PixelBlock};
 
 /// What an integer formula may use: lanes of 8 pixels, colour and alpha alike, all in 0 ..= 255.
@@ -123,12 +122,9 @@ pub(super) fn plus<S: Simd>(simd: S, dst: &mut PixelBlock, src: &PixelBlock, mas
         #[inline(always)]
         || {
             for ((dst, src), mask) in dst.iter_mut().zip(src).zip(mask) {
-                let masks = doubled_words(simd, mask);
-                let halves = dst.as_chunks_mut::<32>().0.iter_mut().zip(src.as_chunks::<32>().0);
-                for ((dst, src), mask) in halves.zip(masks) {
-                    let source = scale(Words::from_bytes(u8x32::load_array_ref(simd, src)), mask).to_bytes();
-                    u8x32::load_array_ref(simd, dst).saturating_add(source).store_array(dst);
-                }
+                let source = RowWords::from_bytes(u8x64::load_array_ref(simd, src)).times(doubled_row(simd, mask));
+                let source = source.quotients_255().to_bytes();
+                u8x64::load_array_ref(simd, dst).saturating_add(source).store_array(dst);
             }
         },
     );

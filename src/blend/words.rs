@@ -1,13 +1,13 @@
-//! Eight pixels at a time, in sixteen-bit lanes.
+//! Eight pixels at a time, or sixteen, in sixteen-bit lanes.
 //!
-//! A vector of 32 bytes is eight RGBA pixels. Its even bytes (red, blue) and odd bytes (green, alpha)
+//! A vector of 32 bytes is eight RGBA pixels, one of 64 a row of a block. Its even bytes (red, blue) and odd bytes (green, alpha)
 //! become one vector of 16-bit lanes each by a mask and a shift: nothing moves between lanes, and
 //! products of two components fit.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{u8x32, u16x16};
+use fearless_simd::{u8x32, u8x64, u16x16, u16x32};
 
-use crate::num::lanes::{doubled_words, high_product};
+use crate::num::lanes::{doubled_words, high_product, high_row_product};
 use crate::surface::block::{MaskBlock, PixelBlock};
 
 /// Eight RGBA pixels: component k of pixel i is in lane 2i + ⌊k / 2⌋ of `even` or `odd`.
@@ -43,6 +43,52 @@ impl<S: Simd> Words<S> {
     pub(super) fn alpha(self) -> u16x16<S> {
         duplicate_odd(self.odd)
     }
+}
+
+/// [`Words`] of 16 pixels: one instruction for each where vectors have 512 bits.
+#[derive(Clone, Copy)]
+pub(super) struct RowWords<S: Simd> {
+    pub(super) even: u16x32<S>,
+    pub(super) odd: u16x32<S>,
+}
+
+impl<S: Simd> RowWords<S> {
+    #[inline(always)]
+    pub(super) fn from_bytes(bytes: u8x64<S>) -> Self {
+        let words: u16x32<S> = bytes.bitcast();
+        Self { even: words & 255, odd: words >> 8 }
+    }
+
+    /// The bytes again; every lane must be below 256.
+    #[inline(always)]
+    pub(super) fn to_bytes(self) -> u8x64<S> {
+        (self.even | (self.odd << 8)).bitcast()
+    }
+
+    /// Every lane times `by`, with the 128 that [`quotient_255`] rounds by.
+    #[inline(always)]
+    pub(super) fn times(self, by: u16x32<S>) -> Self {
+        Self { even: self.even * by + 128, odd: self.odd * by + 128 }
+    }
+
+    /// [`quotient_255`] of every lane.
+    #[inline(always)]
+    pub(super) fn quotients_255(self) -> Self {
+        Self { even: row_quotient_255(self.even), odd: row_quotient_255(self.odd) }
+    }
+
+    /// Each pixel's alpha in both of its lanes.
+    #[inline(always)]
+    pub(super) fn alpha(self) -> u16x32<S> {
+        let odd = self.odd.unzip_high(self.odd);
+        odd.zip_low(odd)
+    }
+}
+
+/// [`quotient_255`] of a row.
+#[inline(always)]
+pub(super) fn row_quotient_255<S: Simd>(v: u16x32<S>) -> u16x32<S> {
+    high_row_product(v, 257)
 }
 
 /// The odd lanes of `v`, each twice. The compiler joins the two moves into one shuffle (two at SSE2).

@@ -3,7 +3,7 @@
 use super::Canvas;
 use crate::display_list::{Geometry, Paint, Span, ToPaint};
 use crate::geom::{IntRect, Point};
-use crate::num::level::{SimdLevel, dispatch};
+use crate::num::level::{SimdLevel, dispatch_up_to_avx2};
 use crate::path::flatten::{PolygonSink, flatten_fill};
 use crate::path::{Path, Segment, Verb};
 use crate::raster::{circle, line, polygon};
@@ -119,7 +119,7 @@ impl Canvas<'_> {
                 Segment::Close => (Verb::LineTo, vec![last, start]),
             };
             let placed: Vec<Point> = points.iter().map(|p| transform.map(*p)).collect();
-            dispatch!(SimdLevel::best(), simd => {
+            dispatch_up_to_avx2!(SimdLevel::best(), simd => {
                 flatten_fill(simd, &[Verb::MoveTo, verb], &placed, &mut chain);
             });
             last = points.last().copied().unwrap_or(last);

@@ -5,7 +5,7 @@ use super::lines::{COLUMNS, Columns, Lanes, copy};
 use super::source::{PART, Parts, bands, strips};
 use crate::error::Result;
 use crate::geom::IntRect;
-use crate::num::level::dispatch;
+use crate::num::level::dispatch_up_to_avx2;
 use crate::num::trig;
 
 /// Deviations in pixels below this are no blur: their kernel's neighbours round to nothing.
@@ -201,20 +201,20 @@ impl Pass {
 
     fn run(&self, work: Work, source: &[Lanes], offset: isize, target: &mut [Lanes]) {
         match self {
-            Self::Kernel(weights) => dispatch!(work.level, simd => {
+            Self::Kernel(weights) => dispatch_up_to_avx2!(work.level, simd => {
                 let _ = simd;
                 convolve(weights, source, offset, target);
             }),
             Self::Boxes(boxes) => match boxes.count {
-                1 => dispatch!(work.level, simd => {
+                1 => dispatch_up_to_avx2!(work.level, simd => {
                     let _ = simd;
                     boxes.run::<1>(source, offset, target);
                 }),
-                2 => dispatch!(work.level, simd => {
+                2 => dispatch_up_to_avx2!(work.level, simd => {
                     let _ = simd;
                     boxes.run::<2>(source, offset, target);
                 }),
-                _ => dispatch!(work.level, simd => {
+                _ => dispatch_up_to_avx2!(work.level, simd => {
                     let _ = simd;
                     boxes.run::<3>(source, offset, target);
                 }),

@@ -6,7 +6,7 @@ use super::image::{Image, Work, union};
 use crate::blend::{BlendMode, composite_block};
 use crate::error::Result;
 use crate::geom::IntRect;
-use crate::num::level::dispatch;
+use crate::num::level::dispatch_up_to_avx2;
 use crate::pool;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, MaskBlock, PixelBlock};
 
@@ -98,7 +98,7 @@ pub(super) fn blend_onto(out: &mut Image, top: &Image, touched: IntRect, mode: B
         if y >= touched.bottom || y + BLOCK_HEIGHT as i32 <= touched.top {
             return;
         }
-        dispatch!(work.level, simd => {
+        dispatch_up_to_avx2!(work.level, simd => {
             for start in (first..last).step_by(BLOCK_WIDTH) {
                 let end = (start + BLOCK_WIDTH).min(last);
                 let x = area.left + start as i32;
@@ -214,7 +214,7 @@ mod tests {
                 let (mut d, mut s) = (NO_PIXELS, NO_PIXELS);
                 d[0][..4].copy_from_slice(under);
                 s[0][..4].copy_from_slice(over);
-                dispatch!(SimdLevel::Scalar, simd => composite_block(simd, mode, &mut d, &s, &FULL));
+                dispatch_up_to_avx2!(SimdLevel::Scalar, simd => composite_block(simd, mode, &mut d, &s, &FULL));
                 under.copy_from_slice(&d[0][..4]);
             }
             assert_eq!(whole.crop(all).unwrap(), under, "{mode}");

@@ -5,7 +5,7 @@ use super::source::bands_of_parts;
 use crate::color::{demultiply_u8, unit};
 use crate::error::{Error, Result};
 use crate::geom::IntRect;
-use crate::num::level::dispatch;
+use crate::num::level::dispatch_up_to_avx2;
 
 /// What lies beyond the filter's region, for [`ConvolveMatrix`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,7 +105,7 @@ pub(super) fn convolve(
         }
         out.for_rows_of(band, work, |y, row| {
             let mut sums: Sums = vec![0.0; width * 4];
-            dispatch!(work.level, simd => {
+            dispatch_up_to_avx2!(work.level, simd => {
                 let _ = simd;
                 sum_row(matrix, &source, y - before.1, &mut sums);
             });

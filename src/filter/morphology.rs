@@ -5,7 +5,7 @@ use super::lines::{COLUMNS, Columns, Lanes};
 use super::source::bands;
 use crate::error::Result;
 use crate::geom::IntRect;
-use crate::num::level::dispatch;
+use crate::num::level::dispatch_up_to_avx2;
 
 /// Whether shapes shrink or grow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,11 +44,11 @@ pub(super) fn morphology(
     let line = |source: &[Lanes], offset: isize, target: &mut [Lanes], radius: i32| {
         let radius = (radius.max(0) as usize).min(source.len() + target.len());
         match operator {
-            MorphologyOperator::Erode => dispatch!(work.level, simd => {
+            MorphologyOperator::Erode => dispatch_up_to_avx2!(work.level, simd => {
                 let _ = simd;
                 extremes(source, offset, target, radius, 255, #[inline(always)] |a, b| if a < b { a } else { b });
             }),
-            MorphologyOperator::Dilate => dispatch!(work.level, simd => {
+            MorphologyOperator::Dilate => dispatch_up_to_avx2!(work.level, simd => {
                 let _ = simd;
                 extremes(source, offset, target, radius, 0, #[inline(always)] |a, b| if a > b { a } else { b });
             }),

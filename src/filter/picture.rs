@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::image::{Image, Work};
 use crate::error::Result;
 use crate::geom::{IntRect, Rect, Transform};
-use crate::num::level::dispatch;
+use crate::num::level::dispatch_up_to_avx2;
 use crate::paint::{FilterQuality, Pattern, PreparedPaint, SpreadMode, fetch_block};
 use crate::pool;
 use crate::surface::Pixmap;
@@ -49,7 +49,7 @@ pub(super) fn picture(image: &Arc<Pixmap>, area: IntRect, destination: Rect, wor
         let y = bounds.top + (job * BLOCK_HEIGHT) as i32;
         for start in (0..columns).step_by(BLOCK_WIDTH) {
             let mut block = [[0; BLOCK_WIDTH * 4]; BLOCK_HEIGHT];
-            dispatch!(work.level, simd => fetch_block(simd, &paint, bounds.left + start as i32, y, &mut block));
+            dispatch_up_to_avx2!(work.level, simd => fetch_block(simd, &paint, bounds.left + start as i32, y, &mut block));
             for (row, block) in pixels.chunks_mut(columns).zip(&block) {
                 for (pixel, value) in row.iter_mut().skip(start).zip(block.as_chunks::<4>().0) {
                     *pixel = *value;

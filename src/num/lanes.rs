@@ -1,7 +1,7 @@
 //! Small pieces of lane arithmetic that every level rounds alike.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x8, f64x2, i32x4, i32x8, u8x16, u8x32, u16x8, u16x16};
+use fearless_simd::{Level, f32x8, f64x2, i32x4, i32x8, u8x16, u8x32, u8x64, u16x8, u16x16, u16x32};
 
 /// An array of `f` of each index. `array::from_fn` and `array::map` are not always inlined, and vectors in them are then reckoned
 /// without the caller's SIMD level: every operation becomes a call.
@@ -110,6 +110,14 @@ pub(crate) fn high_product<S: Simd>(v: u16x16<S>, factor: u16) -> u16x16<S> {
     low.unzip_high(high)
 }
 
+/// [`high_product`] of twice as many.
+#[inline(always)]
+pub(crate) fn high_row_product<S: Simd>(v: u16x32<S>, factor: u16) -> u16x32<S> {
+    let (low, high) = v.widening_mul(factor);
+    let (low, high): (u16x32<S>, u16x32<S>) = (low.bitcast(), high.bitcast());
+    low.unzip_high(high)
+}
+
 /// Sixteen bytes as words, each twice: the coverage of the two halves of a block's row, in both lanes of its pixel.
 #[inline(always)]
 pub(crate) fn doubled_words<S: Simd>(simd: S, bytes: &[u8; 16]) -> [u16x16<S>; 2] {
@@ -131,6 +139,20 @@ pub(crate) fn doubled_words<S: Simd>(simd: S, bytes: &[u8; 16]) -> [u16x16<S>; 2
     }
 }
 
+/// [`doubled_words`] of a whole row.
+#[inline(always)]
+pub(crate) fn doubled_row<S: Simd>(simd: S, bytes: &[u8; 16]) -> u16x32<S> {
+    if has_byte_shuffle(simd) {
+        let indices = u8x64::load_array(simd, const { row_indices() });
+        let words: u16x32<S> =
+            u8x64::block_splat(u8x16::load_array_ref(simd, bytes)).swizzle_dyn_within_blocks(indices).bitcast();
+        words & 255
+    } else {
+        let [low, high] = doubled_words(simd, bytes);
+        low.combine(high)
+    }
+}
+
 /// Whether the level moves bytes by a vector of indices in one instruction. Known when compiled.
 #[inline(always)]
 fn has_byte_shuffle<S: Simd>(simd: S) -> bool {
@@ -148,6 +170,17 @@ const fn pixel_indices(first: u8) -> [u8; 32] {
     let mut lane = 0;
     while lane < 16 {
         indices[2 * lane] = first + (lane / 2) as u8;
+        lane += 1;
+    }
+    indices
+}
+
+/// [`pixel_indices`] of all sixteen.
+const fn row_indices() -> [u8; 64] {
+    let mut indices = [255; 64];
+    let mut lane = 0;
+    while lane < 32 {
+        indices[2 * lane] = (lane / 2) as u8;
         lane += 1;
     }
     indices

@@ -15,6 +15,8 @@ pub enum SimdLevel {
     Sse2,
     /// 256-bit AVX2 (x86-64-v3).
     Avx2,
+    /// 512-bit AVX-512, as Ice Lake and Zen 4 have it.
+    Avx512,
     /// 128-bit NEON, the baseline of AArch64.
     Neon,
     /// 128-bit WebAssembly SIMD.
@@ -23,7 +25,7 @@ pub enum SimdLevel {
 
 impl SimdLevel {
     /// Every level, whether or not this machine has it, worst first.
-    const ALL: [Self; 5] = [Self::Scalar, Self::Sse2, Self::WasmSimd128, Self::Neon, Self::Avx2];
+    const ALL: [Self; 6] = [Self::Scalar, Self::Sse2, Self::WasmSimd128, Self::Neon, Self::Avx2, Self::Avx512];
 
     /// The best level of this machine.
     pub fn best() -> Self {
@@ -41,6 +43,7 @@ impl SimdLevel {
             Self::Scalar => "scalar",
             Self::Sse2 => "sse2",
             Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
             Self::Neon => "neon",
             Self::WasmSimd128 => "wasm-simd128",
         }
@@ -60,6 +63,8 @@ impl SimdLevel {
             Self::Sse2 => best.as_sse2().is_some(),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Self::Avx2 => best.as_avx2().is_some(),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Self::Avx512 => best.as_avx512().is_some(),
             #[cfg(target_arch = "aarch64")]
             Self::Neon => best.as_neon().is_some(),
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -76,22 +81,45 @@ impl SimdLevel {
 /// for it. Everything called from `$body` that should use the level must be `#[inline(always)]`, or
 /// enter `simd.vectorize` itself.
 ///
-/// With `RUSTFLAGS="--cfg rastrum_best_level_only"` SSE2 is left out, which takes a third off the time of a build: for
+/// With `RUSTFLAGS="--cfg rastrum_best_level_only"` SSE2 is left out, which takes a quarter off the time of a build: for
 /// measuring one change after another, not for use.
 ///
-/// SSE4.2 and AVX-512 are not listed on purpose: each level is another copy of the renderer, the
-/// vectors here are at most 256 bits wide, and SSE2 covers what machines between the two have.
+/// SSE4.2 is not listed on purpose: each level is another copy of the renderer, and SSE2 covers what machines between it and
+/// AVX2 have.
 macro_rules! dispatch {
+    ($level:expr, $simd:ident => $body:expr) => {{
+        let level: $crate::num::level::SimdLevel = $level;
+        match level {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            $crate::num::level::SimdLevel::Avx512 if let Some($simd) = fearless_simd::Level::new().as_avx512() => {
+                use fearless_simd::Simd as _;
+                $simd.vectorize(
+                    #[inline(always)]
+                    || $body,
+                )
+            }
+            level => $crate::num::level::dispatch_up_to_avx2!(level, $simd => $body),
+        }
+    }};
+}
+pub(crate) use dispatch;
+
+/// [`dispatch`], but AVX-512 is AVX2: for work that gains nothing by it, or that is rare, since each level is another copy.
+macro_rules! dispatch_up_to_avx2 {
     ($level:expr, $simd:ident => $body:expr) => {{
         use fearless_simd::Simd as _;
         let level: $crate::num::level::SimdLevel = $level;
         let best = fearless_simd::Level::new();
         match level {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            $crate::num::level::SimdLevel::Avx2 if let Some($simd) = best.as_avx2() => $simd.vectorize(
-                #[inline(always)]
-                || $body,
-            ),
+            $crate::num::level::SimdLevel::Avx512 | $crate::num::level::SimdLevel::Avx2
+                if let Some($simd) = best.as_avx2() =>
+            {
+                $simd.vectorize(
+                    #[inline(always)]
+                    || $body,
+                )
+            }
             #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(rastrum_best_level_only)))]
             $crate::num::level::SimdLevel::Sse2 if let Some($simd) = best.as_sse2() => $simd.vectorize(
                 #[inline(always)]
@@ -118,7 +146,7 @@ macro_rules! dispatch {
         }
     }};
 }
-pub(crate) use dispatch;
+pub(crate) use dispatch_up_to_avx2;
 
 #[cfg(test)]
 mod tests {

@@ -5,7 +5,7 @@ use super::flatten::{PolygonSink, flatten_fill};
 use super::stroke::{StrokeScratch, stroke};
 use super::{Path, Segment, Stroke};
 use crate::geom::{Point, Rect, Transform};
-use crate::num::level::{SimdLevel, dispatch};
+use crate::num::level::{SimdLevel, dispatch_up_to_avx2};
 use crate::style::FillRule;
 
 impl Path {
@@ -94,7 +94,7 @@ impl Path {
     pub fn flattened(&self, transform: Transform) -> Self {
         let mut outline = Outline(Self::new());
         let points: Vec<Point> = self.points().iter().map(|p| transform.map(*p)).collect();
-        dispatch!(SimdLevel::best(), simd => {
+        dispatch_up_to_avx2!(SimdLevel::best(), simd => {
             flatten_fill(simd, self.verbs(), &points, &mut outline);
         });
         outline.0

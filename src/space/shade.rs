@@ -11,7 +11,7 @@ use super::state::{Blend, Compare};
 use super::target::{BandMut, TILE, over};
 use super::test::{Tests, test_group};
 use crate::num::lanes::{div255, div255_u16};
-use crate::num::level::{SimdLevel, dispatch};
+use crate::num::level::{SimdLevel, dispatch_up_to_avx2};
 
 /// What happens to a fragment after its shader.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ pub(crate) fn flush<F: FragmentShader>(
     band: &mut BandMut<'_>,
     counters: &mut Counters,
 ) {
-    dispatch!(level, simd => shade_batch(simd, shader, output, batch, vertices, band, counters));
+    dispatch_up_to_avx2!(level, simd => shade_batch(simd, shader, output, batch, vertices, band, counters));
 }
 
 #[inline(always)]

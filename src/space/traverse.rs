@@ -15,7 +15,7 @@ use super::setup::{self, Edge, Gradients, PixelBox};
 use super::target::{BandMut, DepthBounds, TILE};
 use super::test::{Tests, depth_keys, depth_passes, lane_offsets, test_group};
 use super::vertex::ScreenVertex;
-use crate::num::level::{SimdLevel, dispatch};
+use crate::num::level::{SimdLevel, dispatch_up_to_avx2};
 
 /// Tiles side by side that are asked at once whether they hide a triangle.
 const RUN: i32 = 16;
@@ -53,7 +53,7 @@ pub(crate) fn draw(
         right: band.area.right,
         bottom: band.area.bottom,
     });
-    dispatch!(traversal.level, simd => {
+    dispatch_up_to_avx2!(traversal.level, simd => {
         let mut walk = Walk { traversal, vertices, band, batch, counters, flush, area };
         for draw in draws {
             walk.draw(simd, draw);
