@@ -1,7 +1,7 @@
 //! Small pieces of lane arithmetic that every level rounds alike.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x8, f64x2, i32x4, i32x8, u8x16, u8x32, u8x64, u16x8, u16x16, u16x32};
+use fearless_simd::{Level, f32x8, f64x2, i32x4, i32x8, i32x16, u8x16, u8x32, u8x64, u16x8, u16x16, u16x32};
 
 /// An array of `f` of each index. `array::from_fn` and `array::map` are not always inlined, and vectors in them are then reckoned
 /// without the caller's SIMD level: every operation becomes a call.
@@ -46,29 +46,38 @@ pub(crate) fn min_f32<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
 /// sign is lost. One instruction, where [`max_f32`] takes two.
 #[inline(always)]
 #[expect(clippy::disallowed_methods, reason = "without NaN, levels differ in the sign of zero alone")]
-pub(crate) fn greater_f32<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+pub(crate) fn greater_f32<S: Simd, V: SimdBase<S, Element = f32>>(a: V, b: V) -> V {
     a.max(b)
 }
 
 /// The smaller lane of two vectors; see [`greater_f32`].
 #[inline(always)]
 #[expect(clippy::disallowed_methods, reason = "without NaN, levels differ in the sign of zero alone")]
-pub(crate) fn lesser_f32<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+pub(crate) fn lesser_f32<S: Simd, V: SimdBase<S, Element = f32>>(a: V, b: V) -> V {
     a.min(b)
 }
 
 /// The larger lane of two integer vectors.
 #[inline(always)]
 #[expect(clippy::disallowed_methods, reason = "integer maximum is the same at every level")]
-pub(crate) fn max_i32<S: Simd>(a: i32x8<S>, b: i32x8<S>) -> i32x8<S> {
+pub(crate) fn max_i32<S: Simd, V: SimdBase<S, Element = i32>>(a: V, b: V) -> V {
     a.max(b)
 }
 
 /// The smaller lane of two integer vectors.
 #[inline(always)]
 #[expect(clippy::disallowed_methods, reason = "integer minimum is the same at every level")]
-pub(crate) fn min_i32<S: Simd>(a: i32x8<S>, b: i32x8<S>) -> i32x8<S> {
+pub(crate) fn min_i32<S: Simd, V: SimdBase<S, Element = i32>>(a: V, b: V) -> V {
     a.min(b)
+}
+
+/// The least lane of each of four vectors.
+#[inline(always)]
+#[expect(clippy::disallowed_methods, reason = "integer minimum is the same at every level")]
+pub(crate) fn least_of_sixteen<S: Simd>(vectors: [i32x16<S>; 4]) -> [i32; 4] {
+    let [a, b, c, d] = vectors;
+    let ((a, e), (b, f), (c, g), (d, h)) = (a.split(), b.split(), c.split(), d.split());
+    least_of_each([a.min(e), b.min(f), c.min(g), d.min(h)])
 }
 
 /// The least lane of each of four vectors.
@@ -194,7 +203,12 @@ pub(crate) const RAISED: i32 = 0x4b40_0000;
 /// Adding 1.5 · 2^23 leaves the rounded integer in the low bits of the mantissa: one addition at every level, where a
 /// native rounding instruction is missing from some. In differences, what was added is lost.
 #[inline(always)]
-pub(crate) fn round_raised_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
+pub(crate) fn round_raised_f32<S, F, I>(v: F) -> I
+where
+    S: Simd,
+    F: SimdFloat<S, Element = f32>,
+    I: SimdInt<S, ByteVector = F::ByteVector>,
+{
     (v + 12_582_912.0).bitcast()
 }
 

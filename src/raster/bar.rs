@@ -167,7 +167,7 @@ impl Bar {
             for _ in 0..count {
                 at += 1.0;
                 let area = area(at);
-                let coverage: u32x8<S> = round_raised_f32((area - before) * 255.0).bitcast();
+                let coverage: u32x8<S> = round_raised_f32((area - before) * 255.0);
                 *packed = (*packed >> 8) | (coverage << 24);
                 before = area;
             }
@@ -242,7 +242,8 @@ impl Bar {
         for row in start..end {
             at += 1.0;
             let area = area_to(at);
-            let coverage = round_raised_f32((area - before) * 255.0) & 255;
+            let coverage: u32x8<S> = round_raised_f32((area - before) * 255.0);
+            let coverage = coverage & 255;
             sink.run(simd, row, column, (coverage | (coverage << 16)).bitcast());
             before = area;
         }

@@ -1,11 +1,11 @@
-//! Edges of a draw into cells, looked at eight at a time: which way each goes, how steeply, and in which strip and
-//! columns, is found for eight of them at once. Those that stay within one strip, as most of small shapes and of curves
+//! Edges of a draw into cells, looked at sixteen at a time: which way each goes, how steeply, and in which strip and
+//! columns, is found for all of them at once, which is one vector of 512 bits or two of 256. Those that stay within one strip, as most of small shapes and of curves
 //! do, are then added straight away; the others take the kernel's general way.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8, mask32x8};
+use fearless_simd::{f32x16, i32x16, mask32x16};
 
-use super::bins::Edges;
+use super::bins::{Edges, LANES};
 use super::cell::{Accumulator, Column};
 use super::edge::{FineLine, FixedPoint};
 use super::kernel::{
@@ -13,7 +13,7 @@ use super::kernel::{
     add_strip_part, are_flat, fine, is_flat, two_columns,
 };
 use crate::num::fixed;
-use crate::num::lanes::{greater_f32, least_of_each, lesser_f32, max_i32, min_i32};
+use crate::num::lanes::{greater_f32, least_of_sixteen, lesser_f32, max_i32, min_i32};
 use crate::surface::block::BLOCK_HEIGHT;
 
 /// From 24.8 to 20.12 fixed point.
@@ -30,42 +30,42 @@ pub(crate) fn add_edges<S: Simd>(
     strips: usize,
     reaches: &[Reach],
 ) {
-    edges.for_eights(
+    edges.for_batches(
         #[inline(always)]
         |from, to, count| {
-            let eight = Eight::new(simd, from, to, top);
+            let batch = Batch::new(simd, from, to, top);
             let all = (1 << count) - 1;
-            let (mut single, mut others) = (eight.single & all, eight.climbs & !eight.single & all);
-            let small = eight.small & all;
+            let (mut single, mut others) = (batch.single & all, batch.climbs & !batch.single & all);
+            let small = batch.small & all;
             if is_worth_a_batch(small) {
                 single &= !small;
-                others = others & !small | add_small(simd, cells, &eight, small, strips, reaches);
+                others = others & !small | add_small(simd, cells, &batch, small, strips, reaches);
             }
             while single != 0 {
-                let lane = single.trailing_zeros() as usize & 7;
+                let lane = single.trailing_zeros() as usize & (LANES - 1);
                 single &= single - 1;
-                if !add_single(simd, cells, &eight, lane, strips, reaches) {
+                if !add_single(simd, cells, &batch, lane, strips, reaches) {
                     others |= 1 << lane;
                 }
             }
-            let mut across = eight.across & others;
+            let mut across = batch.across & others;
             others &= !across;
             while across != 0 {
-                let lane = across.trailing_zeros() as usize & 7;
+                let lane = across.trailing_zeros() as usize & (LANES - 1);
                 across &= across - 1;
-                let strip = eight.start_y[lane] >> STRIP_SHIFT;
-                let ends = (eight.least[lane], eight.greatest[lane]);
-                add_across(simd, cells, strip, strips, eight.line(lane), ends, reaches);
+                let strip = batch.start_y[lane] >> STRIP_SHIFT;
+                let ends = (batch.least[lane], batch.greatest[lane]);
+                add_across(simd, cells, strip, strips, batch.line(lane), ends, reaches);
             }
-            let tall = others & eight.tall;
+            let tall = others & batch.tall;
             if tall & tall.wrapping_sub(1) != 0 {
-                add_tall(simd, cells, &eight, others, top, strips, reaches);
+                add_tall(simd, cells, &batch, others, top, strips, reaches);
                 return;
             }
             while others != 0 {
-                let lane = others.trailing_zeros() as usize & 7;
+                let lane = others.trailing_zeros() as usize & (LANES - 1);
                 others &= others - 1;
-                add_downward(simd, cells, eight.downward(lane, top), top, strips, reaches);
+                add_downward(simd, cells, batch.downward(lane, top), top, strips, reaches);
             }
         },
     );
@@ -83,32 +83,32 @@ fn is_worth_a_batch(edges: u32) -> bool {
 fn add_small<S: Simd>(
     simd: S,
     cells: &mut Accumulator,
-    eight: &Eight,
+    batch: &Batch,
     small: u32,
     strips: usize,
     reaches: &[Reach],
 ) -> u32 {
-    let areas = SmallAreas::new(simd, eight);
+    let areas = SmallAreas::new(simd, batch);
     // Mostly they are neighbours: what strips and columns have to be asked is then asked once for all of them.
-    let near = Near::new(simd, eight, small);
+    let near = Near::new(simd, batch, small);
     if near.is_small() && cells.holds(near.last() + 3) && near.is_seen(reaches) {
         cells.occupy(near.first_strip(), near.first(), near.last() + 1);
         if near.last_strip() != near.first_strip() {
             cells.occupy(near.last_strip(), near.first(), near.last() + 1);
         }
-        areas.add(simd, cells, eight, small);
+        areas.add(simd, cells, batch, small);
         return 0;
     }
     let mut others = 0;
     let mut left = small;
     while left != 0 {
-        let lane = left.trailing_zeros() as usize & 7;
+        let lane = left.trailing_zeros() as usize & (LANES - 1);
         left &= left - 1;
-        if eight.single >> lane & 1 == 0 {
+        if batch.single >> lane & 1 == 0 {
             others |= 1 << lane;
             continue;
         }
-        let (strip, first, last) = match eight.place(lane, strips, reaches) {
+        let (strip, first, last) = match batch.place(lane, strips, reaches) {
             Place::Seen(strip, first, last) => (strip, first, last),
             Place::Unseen => continue,
             Place::PartlySeen => {
@@ -118,7 +118,7 @@ fn add_small<S: Simd>(
         };
         let Some(mut strip) = cells.strip(strip) else { continue };
         strip.occupy_pair(first, last + 1);
-        let row = (eight.start_y[lane] >> fixed::SHIFT) as usize & (BLOCK_HEIGHT - 1);
+        let row = (batch.start_y[lane] >> fixed::SHIFT) as usize & (BLOCK_HEIGHT - 1);
         if let Some(columns) = strip.columns.get_mut(first..).and_then(|rest| rest.first_chunk_mut::<3>()) {
             areas.add_lane(columns, lane, row);
         }
@@ -141,16 +141,15 @@ impl Near {
     const FARTHEST: i32 = 48 << fixed::SHIFT;
 
     #[inline(always)]
-    fn new<S: Simd>(simd: S, eight: &Eight, edges: u32) -> Self {
-        let bits = i32x8::simd_from(simd, [1, 2, 4, 8, 16, 32, 64, 128]);
-        let chosen = (i32x8::splat(simd, edges as i32) & bits).simd_gt(0);
-        let none = i32x8::splat(simd, i32::MAX);
+    fn new<S: Simd>(simd: S, batch: &Batch, edges: u32) -> Self {
+        let chosen = mask32x16::from_bitmask(simd, u64::from(edges));
+        let none = i32x16::splat(simd, i32::MAX);
         let (start_y, height) =
-            (i32x8::load_array_ref(simd, &eight.start_y), i32x8::load_array_ref(simd, &eight.height));
+            (i32x16::load_array_ref(simd, &batch.start_y), i32x16::load_array_ref(simd, &batch.height));
         // The greatest is the least of what all bits are turned around of.
-        let [least, greatest, top, bottom] = least_of_each([
-            chosen.select(i32x8::load_array_ref(simd, &eight.least), none),
-            chosen.select(!i32x8::load_array_ref(simd, &eight.greatest), none),
+        let [least, greatest, top, bottom] = least_of_sixteen([
+            chosen.select(i32x16::load_array_ref(simd, &batch.least), none),
+            chosen.select(!i32x16::load_array_ref(simd, &batch.greatest), none),
             chosen.select(start_y, none),
             chosen.select(!(start_y + height - 1), none),
         ]);
@@ -193,44 +192,44 @@ impl Near {
     }
 }
 
-/// What eight edges of at most two rows and two columns add, a lane for each of them: to the cells of the first column, of the
+/// What edges of at most two rows and two columns add, a lane for each of them: to the cells of the first column, of the
 /// next and of the one after, in the row in which they start and in the one beneath. The kernel's formula, across instead of
 /// down.
 struct SmallAreas {
-    columns: [[[i32; 8]; 2]; 3],
+    columns: [[[i32; LANES]; 2]; 3],
 }
 
 /// What is added to the row that follows: nothing where that is another strip's. Not a closure: those are not always inlined, and lose
 /// the SIMD level then.
 #[inline(always)]
-fn next_row<S: Simd>(simd: S, is_last: mask32x8<S>, lower: &[i32; 8]) -> [i32; 8] {
-    is_last.select(i32x8::splat(simd, 0), i32x8::load_array_ref(simd, lower)).to_array()
+fn next_row<S: Simd>(simd: S, is_last: mask32x16<S>, lower: &[i32; LANES]) -> [i32; LANES] {
+    is_last.select(i32x16::splat(simd, 0), i32x16::load_array_ref(simd, lower)).to_array()
 }
 
 impl SmallAreas {
     #[inline(always)]
-    fn new<S: Simd>(simd: S, eight: &Eight) -> Self {
+    fn new<S: Simd>(simd: S, batch: &Batch) -> Self {
         let (height, start_y) =
-            (i32x8::load_array_ref(simd, &eight.height), i32x8::load_array_ref(simd, &eight.start_y));
-        let (start, slope) = (f32x8::load_array_ref(simd, &eight.start), f32x8::load_array_ref(simd, &eight.slope));
+            (i32x16::load_array_ref(simd, &batch.height), i32x16::load_array_ref(simd, &batch.start_y));
+        let (start, slope) = (f32x16::load_array_ref(simd, &batch.start), f32x16::load_array_ref(simd, &batch.slope));
         // How far down the lower row begins.
-        let upper = min_i32(i32x8::splat(simd, 256) - (start_y & 255), height);
-        let middle = upper.to_float::<f32x8<S>>() * slope + start;
-        let end = height.to_float::<f32x8<S>>() * slope + start;
-        let upper_row = Self::row(simd, eight, start, middle, upper);
-        let lower_row = Self::row(simd, eight, middle, end, height - upper);
+        let upper = min_i32(i32x16::splat(simd, 256) - (start_y & 255), height);
+        let middle = upper.to_float::<f32x16<S>>() * slope + start;
+        let end = height.to_float::<f32x16<S>>() * slope + start;
+        let upper_row = Self::row(simd, batch, start, middle, upper);
+        let lower_row = Self::row(simd, batch, middle, end, height - upper);
         let ([a, b, c], [d, e, f]) = (upper_row, lower_row);
         Self { columns: [[a, d], [b, e], [c, f]] }
     }
 
     /// Adds all of `edges`. Rows above and below the band are left out.
     #[inline(always)]
-    fn add<S: Simd>(&self, simd: S, cells: &mut Accumulator, eight: &Eight, edges: u32) {
+    fn add<S: Simd>(&self, simd: S, cells: &mut Accumulator, batch: &Batch, edges: u32) {
         const ROWS: i32 = BLOCK_HEIGHT as i32;
         const SPAN: usize = 2 * BLOCK_HEIGHT + 2;
         let stride = cells.stride() as i32;
-        let row = i32x8::load_array_ref(simd, &eight.start_y) >> fixed::SHIFT;
-        let column = i32x8::load_array_ref(simd, &eight.least) >> fixed::SHIFT;
+        let row = i32x16::load_array_ref(simd, &batch.start_y) >> fixed::SHIFT;
+        let column = i32x16::load_array_ref(simd, &batch.least) >> fixed::SHIFT;
         let within = row & (ROWS - 1);
         // Of their first cells. Outside of the band there is no such place, or it is negative, which no place is.
         let places = (((row >> ROWS.ilog2()) * stride + column) * ROWS + within).to_array();
@@ -243,7 +242,7 @@ impl SmallAreas {
         let cells = cells.cells();
         let mut left = edges;
         while left != 0 {
-            let lane = left.trailing_zeros() as usize & 7;
+            let lane = left.trailing_zeros() as usize & (LANES - 1);
             left &= left - 1;
             let place = places[lane] as usize;
             let Some(cells) = cells.get_mut(place..).and_then(|rest| rest.first_chunk_mut::<SPAN>()) else { continue };
@@ -255,9 +254,9 @@ impl SmallAreas {
             cells[2 * BLOCK_HEIGHT] = cells[2 * BLOCK_HEIGHT].wrapping_add(c[lane]);
             cells[2 * BLOCK_HEIGHT + 1] = cells[2 * BLOCK_HEIGHT + 1].wrapping_add(f[lane]);
         }
-        let mut across = edges & !eight.single;
+        let mut across = edges & !batch.single;
         while across != 0 {
-            let lane = across.trailing_zeros() as usize & 7;
+            let lane = across.trailing_zeros() as usize & (LANES - 1);
             across &= across - 1;
             let place = (places[lane] + (stride - 1) * ROWS + 1) as usize;
             if let Some(cells) = cells.get_mut(place..).and_then(|rest| rest.first_chunk_mut::<SPAN>()) {
@@ -281,10 +280,10 @@ impl SmallAreas {
 
     /// What parts add that go from `from` to `to`, so far down.
     #[inline(always)]
-    fn row<S: Simd>(simd: S, eight: &Eight, from: f32x8<S>, to: f32x8<S>, climb: i32x8<S>) -> [[i32; 8]; 3] {
-        let signed = climb * i32x8::load_array_ref(simd, &eight.winding);
-        let steep = f32x8::load_array_ref(simd, &eight.steep);
-        let beyond = (signed + signed).to_float::<f32x8<S>>();
+    fn row<S: Simd>(simd: S, batch: &Batch, from: f32x16<S>, to: f32x16<S>, climb: i32x16<S>) -> [[i32; LANES]; 3] {
+        let signed = climb * i32x16::load_array_ref(simd, &batch.winding);
+        let steep = f32x16::load_array_ref(simd, &batch.steep);
+        let beyond = (signed + signed).to_float::<f32x16<S>>();
         let (left, right) = (lesser_f32(from, to), greater_f32(from, to));
         let [here, next, after] = two_columns(simd, left, right, steep, beyond, signed << 9);
         [here.to_array(), next.to_array(), after.to_array()]
@@ -297,7 +296,7 @@ impl SmallAreas {
 fn add_tall<S: Simd>(
     simd: S,
     cells: &mut Accumulator,
-    eight: &Eight,
+    batch: &Batch,
     edges: u32,
     top: i32,
     strips: usize,
@@ -305,7 +304,7 @@ fn add_tall<S: Simd>(
 ) {
     simd.vectorize(
         #[inline(always)]
-        || add_tall_inner(simd, cells, eight, edges, top, strips, reaches),
+        || add_tall_inner(simd, cells, batch, edges, top, strips, reaches),
     )
 }
 
@@ -313,23 +312,23 @@ fn add_tall<S: Simd>(
 fn add_tall_inner<S: Simd>(
     simd: S,
     cells: &mut Accumulator,
-    eight: &Eight,
+    batch: &Batch,
     edges: u32,
     top: i32,
     strips: usize,
     reaches: &[Reach],
 ) {
-    let crossings = Crossings::new(eight);
-    let (first, end) = eight.strips(edges, strips);
-    let mut from = crossings.at(simd, eight, (first as i32) << STRIP_SHIFT);
+    let crossings = Crossings::new(batch);
+    let (first, end) = batch.strips(edges, strips);
+    let mut from = crossings.at(simd, batch, (first as i32) << STRIP_SHIFT);
     for index in first..end {
         let strip_top = (index as i32) << STRIP_SHIFT;
-        let to = crossings.at(simd, eight, strip_top + (1 << STRIP_SHIFT));
-        let pieces = Pieces::new(simd, eight, &from, &to, strip_top);
+        let to = crossings.at(simd, batch, strip_top + (1 << STRIP_SHIFT));
+        let pieces = Pieces::new(simd, batch, &from, &to, strip_top);
         let (mut left, mut general) = (pieces.climbs & edges, 0_u32);
         if let Some(mut strip) = cells.strip(index) {
             while left != 0 {
-                let lane = left.trailing_zeros() as usize & 7;
+                let lane = left.trailing_zeros() as usize & (LANES - 1);
                 left &= left - 1;
                 let (first, last) = (pieces.first[lane] as usize, pieces.last[lane] as usize);
                 let seen = reaches.get(index).is_none_or(|reach| reach.holds_columns(first, last));
@@ -338,34 +337,34 @@ fn add_tall_inner<S: Simd>(
                     continue;
                 }
                 let (below, height) = (pieces.below[lane], pieces.height[lane]);
-                let (start, slant) = (pieces.start[lane], eight.slant(lane));
+                let (start, slant) = (pieces.start[lane], batch.slant(lane));
                 let parts = RowParts::of(simd, PieceLine { below, height, start, slant });
                 add_row_parts(simd, &mut strip, parts, first, last);
             }
         }
         while general != 0 {
-            let lane = general.trailing_zeros() as usize & 7;
+            let lane = general.trailing_zeros() as usize & (LANES - 1);
             general &= general - 1;
             let y = top + strip_top + pieces.below[lane];
             let (start, end) = ((from[lane], y), (to[lane], y + pieces.height[lane]));
-            add_strip_part(simd, cells, index, start, end, eight.slant(lane), top, reaches);
+            add_strip_part(simd, cells, index, start, end, batch.slant(lane), top, reaches);
         }
         from = to;
     }
 }
 
-/// Eight edges' lines, a lane for each, as [`FineLine`](super::edge::FineLine) has them.
+/// Batch edges' lines, a lane for each, as [`FineLine`](super::edge::FineLine) has them.
 struct Crossings {
-    x: [f64; 8],
-    slope: [f64; 8],
+    x: [f64; LANES],
+    slope: [f64; LANES],
 }
 
 impl Crossings {
     #[inline(always)]
-    fn new(eight: &Eight) -> Self {
-        let (mut x, mut slope) = ([0.0; 8], [0.0; 8]);
-        for lane in 0..8 {
-            let line = FineLine::new(eight.start_x[lane], eight.end_x[lane], eight.height[lane]);
+    fn new(batch: &Batch) -> Self {
+        let (mut x, mut slope) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let line = FineLine::new(batch.start_x[lane], batch.end_x[lane], batch.height[lane]);
             (x[lane], slope[lane]) = (line.x, line.slope);
         }
         Self { x, slope }
@@ -373,43 +372,44 @@ impl Crossings {
 
     /// x in 20.12 fixed point where they cross y, from the band's top; where they start or end, if they do not.
     #[inline(always)]
-    fn at<S: Simd>(&self, simd: S, eight: &Eight, y: i32) -> [i32; 8] {
+    fn at<S: Simd>(&self, simd: S, batch: &Batch, y: i32) -> [i32; LANES] {
         let (start_y, height) =
-            (i32x8::load_array_ref(simd, &eight.start_y), i32x8::load_array_ref(simd, &eight.height));
-        let down = i32x8::splat(simd, y) - start_y;
-        let (mut x, climbs) = ([0; 8], down.to_array());
-        for lane in 0..8 {
+            (i32x16::load_array_ref(simd, &batch.start_y), i32x16::load_array_ref(simd, &batch.height));
+        let down = i32x16::splat(simd, y) - start_y;
+        let (mut x, climbs) = ([0; LANES], down.to_array());
+        for lane in 0..LANES {
             x[lane] = FineLine { x: self.x[lane], slope: self.slope[lane] }.x_at(climbs[lane]);
         }
-        let (start_x, end_x) = (i32x8::load_array_ref(simd, &eight.start_x), i32x8::load_array_ref(simd, &eight.end_x));
-        let x = down.simd_ge(height).select(end_x << FINER_SHIFT, i32x8::load_array(simd, x));
+        let (start_x, end_x) =
+            (i32x16::load_array_ref(simd, &batch.start_x), i32x16::load_array_ref(simd, &batch.end_x));
+        let x = down.simd_ge(height).select(end_x << FINER_SHIFT, i32x16::load_array(simd, x));
         down.simd_le(0).select(start_x << FINER_SHIFT, x).to_array()
     }
 }
 
-/// The pieces of eight edges in one strip, a lane for each, as a [`PieceLine`] has them.
+/// The pieces of the edges in one strip, a lane for each, as a [`PieceLine`] has them.
 struct Pieces {
     /// Which of them there are, as bits, and which should be walked row by row.
     climbs: u32,
     flat: u32,
-    below: [i32; 8],
-    height: [i32; 8],
-    start: [f32; 8],
-    first: [i32; 8],
-    last: [i32; 8],
+    below: [i32; LANES],
+    height: [i32; LANES],
+    start: [f32; LANES],
+    first: [i32; LANES],
+    last: [i32; LANES],
 }
 
 impl Pieces {
     /// Those in the strip whose top lies so far below the band's, in which they go from x to x (20.12 fixed point).
     #[inline(always)]
-    fn new<S: Simd>(simd: S, eight: &Eight, from: &[i32; 8], to: &[i32; 8], strip_top: i32) -> Self {
-        let (from, to) = (i32x8::load_array_ref(simd, from), i32x8::load_array_ref(simd, to));
-        let start_y = i32x8::load_array_ref(simd, &eight.start_y) - strip_top;
-        let end_y = start_y + i32x8::load_array_ref(simd, &eight.height);
-        let below = max_i32(start_y, i32x8::splat(simd, 0));
-        let height = min_i32(end_y, i32x8::splat(simd, 1 << STRIP_SHIFT)) - below;
+    fn new<S: Simd>(simd: S, batch: &Batch, from: &[i32; LANES], to: &[i32; LANES], strip_top: i32) -> Self {
+        let (from, to) = (i32x16::load_array_ref(simd, from), i32x16::load_array_ref(simd, to));
+        let start_y = i32x16::load_array_ref(simd, &batch.start_y) - strip_top;
+        let end_y = start_y + i32x16::load_array_ref(simd, &batch.height);
+        let below = max_i32(start_y, i32x16::splat(simd, 0));
+        let height = min_i32(end_y, i32x16::splat(simd, 1 << STRIP_SHIFT)) - below;
         let (first, last) = (min_i32(from, to) >> FINE_SHIFT, max_i32(from, to) >> FINE_SHIFT);
-        let start = (from - (first << FINE_SHIFT)).to_float::<f32x8<S>>() * f32x8::splat(simd, fine(1));
+        let start = (from - (first << FINE_SHIFT)).to_float::<f32x16<S>>() * f32x16::splat(simd, fine(1));
         Self {
             climbs: height.simd_gt(0).to_bitmask() as u32,
             flat: are_flat(first, last, height),
@@ -427,21 +427,21 @@ impl Pieces {
 fn add_single<S: Simd>(
     simd: S,
     cells: &mut Accumulator,
-    eight: &Eight,
+    batch: &Batch,
     lane: usize,
     strips: usize,
     reaches: &[Reach],
 ) -> bool {
-    let (strip, first, last) = match eight.place(lane, strips, reaches) {
+    let (strip, first, last) = match batch.place(lane, strips, reaches) {
         Place::Seen(strip, first, last) => (strip, first, last),
         Place::Unseen => return true,
         Place::PartlySeen => return false,
     };
-    if is_flat(first, last, eight.height[lane]) {
+    if is_flat(first, last, batch.height[lane]) {
         return false;
     }
     if let Some(mut strip) = cells.strip(strip) {
-        add_row_parts(simd, &mut strip, RowParts::of(simd, eight.line(lane)), first, last);
+        add_row_parts(simd, &mut strip, RowParts::of(simd, batch.line(lane)), first, last);
     }
     true
 }
@@ -477,8 +477,8 @@ impl Place {
     }
 }
 
-/// What there is to know of eight edges: each array has a lane for each.
-struct Eight {
+/// What there is to know of so many edges: each array has a lane for each.
+struct Batch {
     /// Which of them are not horizontal, as bits, and which of these lie within one strip.
     climbs: u32,
     single: u32,
@@ -489,28 +489,28 @@ struct Eight {
     /// Which of them are higher than a strip.
     tall: u32,
     /// Where they start, downwards; y from the band's top.
-    start_x: [i32; 8],
-    start_y: [i32; 8],
-    end_x: [i32; 8],
-    height: [i32; 8],
+    start_x: [i32; LANES],
+    start_y: [i32; LANES],
+    end_x: [i32; LANES],
+    height: [i32; LANES],
     /// As a [`PieceLine`] has them.
-    start: [f32; 8],
-    slope: [f32; 8],
-    steep: [f32; 8],
-    winding: [i32; 8],
+    start: [f32; LANES],
+    slope: [f32; LANES],
+    steep: [f32; LANES],
+    winding: [i32; LANES],
     /// The least and the greatest x.
-    least: [i32; 8],
-    greatest: [i32; 8],
+    least: [i32; LANES],
+    greatest: [i32; LANES],
 }
 
-impl Eight {
+impl Batch {
     #[inline(always)]
-    fn new<S: Simd>(simd: S, from: &[FixedPoint; 8], to: &[FixedPoint; 8], top: i32) -> Self {
+    fn new<S: Simd>(simd: S, from: &[FixedPoint; LANES], to: &[FixedPoint; LANES], top: i32) -> Self {
         let ((from_x, from_y), (to_x, to_y)) = (coordinates(simd, from), coordinates(simd, to));
         let down = from_y.simd_lt(to_y);
         let (start_x, end_x) = (down.select(from_x, to_x), down.select(to_x, from_x));
         let (start_y, end_y) = (min_i32(from_y, to_y) - top, max_i32(from_y, to_y) - top);
-        let winding = down.select(i32x8::splat(simd, 1), i32x8::splat(simd, -1));
+        let winding = down.select(i32x16::splat(simd, 1), i32x16::splat(simd, -1));
         let (least, greatest) = (min_i32(from_x, to_x), max_i32(from_x, to_x));
         let height = end_y - start_y;
         let one_strip = (start_y >> STRIP_SHIFT).simd_eq((end_y - 1) >> STRIP_SHIFT);
@@ -520,9 +520,9 @@ impl Eight {
         let small = (rows | columns).simd_lt(2);
         let across = climbs & !one_strip & rows.simd_lt(BLOCK_HEIGHT as i32);
         let flat = are_flat(least >> fixed::SHIFT, greatest >> fixed::SHIFT, height);
-        let (run, rise) = ((end_x - start_x).to_float::<f32x8<S>>(), height.to_float::<f32x8<S>>());
-        let zero = f32x8::splat(simd, 0.0);
-        let steep = rise * winding.to_float::<f32x8<S>>() / run.abs();
+        let (run, rise) = ((end_x - start_x).to_float::<f32x16<S>>(), height.to_float::<f32x16<S>>());
+        let zero = f32x16::splat(simd, 0.0);
+        let steep = rise * winding.to_float::<f32x16<S>>() / run.abs();
         Self {
             climbs: climbs.to_bitmask() as u32,
             single: (climbs & one_strip).to_bitmask() as u32,
@@ -533,7 +533,7 @@ impl Eight {
             start_y: start_y.to_array(),
             end_x: end_x.to_array(),
             height: height.to_array(),
-            start: (start_x - ((least >> fixed::SHIFT) << fixed::SHIFT)).to_float::<f32x8<S>>().to_array(),
+            start: (start_x - ((least >> fixed::SHIFT) << fixed::SHIFT)).to_float::<f32x16<S>>().to_array(),
             slope: (run / rise).to_array(),
             steep: run.simd_eq(zero).select(zero, steep).to_array(),
             winding: winding.to_array(),
@@ -548,7 +548,7 @@ impl Eight {
         let (mut first, mut last) = (i32::MAX, i32::MIN);
         let mut left = edges;
         while left != 0 {
-            let lane = left.trailing_zeros() as usize & 7;
+            let lane = left.trailing_zeros() as usize & (LANES - 1);
             left &= left - 1;
             first = first.min(self.start_y[lane]);
             last = last.max(self.start_y[lane] + self.height[lane] - 1);
@@ -588,11 +588,11 @@ impl Eight {
     }
 }
 
-/// x and y of eight points.
+/// x and y of the points.
 #[inline(always)]
-pub(super) fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; 8]) -> (i32x8<S>, i32x8<S>) {
-    let [low, high]: [[i32; 8]; 2] = bytemuck::cast(*points);
-    i32x8::load_array(simd, low).deinterleave(i32x8::load_array(simd, high))
+fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; LANES]) -> (i32x16<S>, i32x16<S>) {
+    let [low, high]: [[i32; LANES]; 2] = bytemuck::cast(*points);
+    i32x16::load_array(simd, low).deinterleave(i32x16::load_array(simd, high))
 }
 
 #[cfg(test)]
@@ -602,7 +602,7 @@ mod tests {
     use crate::raster::kernel::add_edge;
 
     #[test]
-    fn eight_edges_add_what_each_of_them_does() {
+    fn edges_of_a_batch_add_what_each_of_them_does() {
         let mut seed = 3_u32;
         let mut random = |n: i32| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -14,6 +14,9 @@ use crate::num::lanes::{max_f32, min_f32};
 use crate::path::polygons::Polygons;
 use crate::style::FillRule;
 
+/// Edges that are handed over at once.
+pub(super) const LANES: usize = 16;
+
 /// Outlines that reach further, in pixels, are not asked where they cross.
 const FARTHEST: f32 = 1e6;
 
@@ -152,14 +155,14 @@ impl Edges<'_> {
         }
     }
 
-    /// The edges eight at a time: where they start, where they end, and how many there are.
+    /// The edges [`LANES`] at a time: where they start, where they end, and how many there are.
     #[inline(always)]
-    pub(super) fn for_eights(self, mut f: impl FnMut(&[FixedPoint; 8], &[FixedPoint; 8], usize)) {
-        for starts in self.starts.chunks(8) {
+    pub(super) fn for_batches(self, mut f: impl FnMut(&[FixedPoint; LANES], &[FixedPoint; LANES], usize)) {
+        for starts in self.starts.chunks(LANES) {
             let (Some(first), Some(last)) = (starts.first(), starts.last()) else { break };
-            let (mut from, mut to) = ([FixedPoint::default(); 8], [FixedPoint::default(); 8]);
+            let (mut from, mut to) = ([FixedPoint::default(); LANES], [FixedPoint::default(); LANES]);
             // Numbers go up: where the last is as much more than the first as there are, the edges follow each other.
-            let near = self.points.get(*first as usize..).and_then(|rest| rest.first_chunk::<9>());
+            let near = self.points.get(*first as usize..).and_then(|rest| rest.first_chunk::<{ LANES + 1 }>());
             if let Some(points) = near
                 && (last - first) as usize + 1 == starts.len()
             {

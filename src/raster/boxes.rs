@@ -8,7 +8,6 @@ use core::ops::Range;
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
-use super::batch::coordinates;
 use super::edge::FixedPoint;
 use crate::num::lanes::{least_of_each, max_i32, min_i32};
 
@@ -470,6 +469,13 @@ impl Bounds {
             bottom: self.bottom.max(other.bottom),
         }
     }
+}
+
+/// x and y of eight points.
+#[inline(always)]
+fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; 8]) -> (i32x8<S>, i32x8<S>) {
+    let [low, high]: [[i32; 8]; 2] = bytemuck::cast(*points);
+    i32x8::load_array(simd, low).deinterleave(i32x8::load_array(simd, high))
 }
 
 #[cfg(test)]

@@ -374,9 +374,9 @@ pub(super) fn is_flat(first: usize, last: usize, height: i32) -> bool {
     last > first + 4 && (last - first) as i64 * 256 > i64::from(FLAT_COLUMNS_PER_ROW) * i64::from(height)
 }
 
-/// Which of eight pieces are, as bits.
+/// Which of several pieces are, as bits.
 #[inline(always)]
-pub(super) fn are_flat<S: Simd>(first: i32x8<S>, last: i32x8<S>, height: i32x8<S>) -> u32 {
+pub(super) fn are_flat<S: Simd, I: SimdInt<S, Element = i32>>(first: I, last: I, height: I) -> u32 {
     let columns = last - first;
     let many = (columns << fixed::SHIFT).simd_gt(height * FLAT_COLUMNS_PER_ROW);
     (columns.simd_gt(4) & many).to_bitmask() as u32
@@ -482,22 +482,20 @@ fn add_two_columns<S: Simd>(simd: S, [here, next, after]: &mut [Column; 3], row:
 
 /// What parts that lie in the first two columns add to these and to the one after.
 #[inline(always)]
-pub(super) fn two_columns<S: Simd>(
-    simd: S,
-    left: f32x8<S>,
-    right: f32x8<S>,
-    steep: f32x8<S>,
-    beyond: f32x8<S>,
-    total: i32x8<S>,
-) -> [i32x8<S>; 3] {
-    let zero = f32x8::splat(simd, 0.0);
-    let side = f32x8::splat(simd, 256.0);
+pub(super) fn two_columns<S, F, I>(simd: S, left: F, right: F, steep: F, beyond: F, total: I) -> [I; 3]
+where
+    S: Simd,
+    F: SimdFloat<S, Element = f32>,
+    I: SimdInt<S, Element = i32, ByteVector = F::ByteVector>,
+{
+    let zero = F::splat(simd, 0.0);
+    let side = F::splat(simd, 256.0);
     let t = greater_f32(lesser_f32(right, side) - left, zero);
     let width = right - left;
     let within = steep * t * t;
-    let area = round_raised_f32(within + beyond * greater_f32(side - right, zero));
+    let area: I = round_raised_f32(within + beyond * greater_f32(side - right, zero));
     let rest = steep * width * width - within;
-    let next_area = round_raised_f32(rest + beyond * lesser_f32(512.0 - right, side));
+    let next_area: I = round_raised_f32(rest + beyond * lesser_f32(F::splat(simd, 512.0) - right, side));
     [area - RAISED, next_area - area, total + RAISED - next_area]
 }
 

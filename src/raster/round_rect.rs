@@ -348,7 +348,8 @@ fn splat<S: Simd>(simd: S, value: i32) -> f32x8<S> {
 /// The areas of eight columns, of the sums of their heights.
 #[inline(always)]
 fn area<S: Simd>(sums: f32x8<S>) -> [i32; 8] {
-    (round_raised_f32(sums * (FULL / fixed::ONE / SAMPLES) as f32) - RAISED).to_array()
+    let raised: i32x8<S> = round_raised_f32(sums * (FULL / fixed::ONE / SAMPLES) as f32);
+    (raised - RAISED).to_array()
 }
 
 /// A side's parts in eight rows; x in 1/256 pixel from the box's side.
