@@ -1,7 +1,7 @@
 //! Small pieces of lane arithmetic that every level rounds alike.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x8, f64x2, i32x4, i32x8, i32x16, u8x16, u8x32, u8x64, u16x8, u16x16, u16x32};
+use fearless_simd::{Level, f32x8, f32x16, f64x2, i32x4, i32x8, i32x16, u8x16, u8x32, u8x64, u16x8, u16x16, u16x32};
 
 /// An array of `f` of each index. `array::from_fn` and `array::map` are not always inlined, and vectors in them are then reckoned
 /// without the caller's SIMD level: every operation becomes a call.
@@ -32,13 +32,13 @@ pub(crate) fn div255(v: u32) -> u32 {
 /// The larger lane of two vectors without NaN. `a > b ? a : b` spelled out, since the native maximum
 /// differs between instruction sets on NaN and on zeros of different sign.
 #[inline(always)]
-pub(crate) fn max_f32<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+pub(crate) fn max_f32<S: Simd, V: SimdBase<S, Element = f32>>(a: V, b: V) -> V {
     a.simd_gt(b).select(a, b)
 }
 
 /// The smaller lane of two vectors without NaN; see [`max_f32`].
 #[inline(always)]
-pub(crate) fn min_f32<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+pub(crate) fn min_f32<S: Simd, V: SimdBase<S, Element = f32>>(a: V, b: V) -> V {
     a.simd_lt(b).select(a, b)
 }
 
@@ -97,6 +97,13 @@ pub(crate) fn least_of_each<S: Simd>([a, b, c, d]: [i32x8<S>; 4]) -> [i32; 4] {
 #[inline(always)]
 #[expect(clippy::disallowed_methods, reason = "in range, every level truncates alike")]
 pub(crate) fn truncate_f32<S: Simd>(v: f32x8<S>) -> i32x8<S> {
+    v.to_int()
+}
+
+/// [`truncate_f32`] of sixteen.
+#[inline(always)]
+#[expect(clippy::disallowed_methods, reason = "in range, every level truncates alike")]
+pub(crate) fn truncate_sixteen_f32<S: Simd>(v: f32x16<S>) -> i32x16<S> {
     v.to_int()
 }
 

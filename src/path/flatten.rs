@@ -20,7 +20,7 @@ pub(crate) trait PolygonSink {
 }
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, f64x4, i32x8};
+use fearless_simd::{f32x8, f32x16, f64x8, i32x8};
 
 use super::builder::Verb;
 
@@ -104,23 +104,23 @@ fn end<K: PolygonSink>(open: bool, sink: &mut K) {
     }
 }
 
-/// A point four times, x and y in lanes next to each other.
+/// A point eight times, x and y in lanes next to each other.
 #[inline(always)]
-fn pairs<S: Simd>(simd: S, p: &Point) -> f32x8<S> {
+fn pairs<S: Simd>(simd: S, p: &Point) -> f32x16<S> {
     // Read as one number, not as two that are put together again.
-    f64x4::splat(simd, f64::from_bits(bytemuck::pod_read_unaligned(bytemuck::bytes_of(p)))).bitcast()
+    f64x8::splat(simd, f64::from_bits(bytemuck::pod_read_unaligned(bytemuck::bytes_of(p)))).bitcast()
 }
 
-/// The point of which there are four.
+/// The point of which there are eight.
 #[inline(always)]
-fn point<S: Simd>(pairs: f32x8<S>) -> Point {
+fn point<S: Simd>(pairs: f32x16<S>) -> Point {
     let [x, y, ..] = pairs.to_array();
     Point::new(x, y)
 }
 
 /// Writes a quadratic curve from `from` on; gives back its end.
 #[inline(always)]
-fn quad<S: Simd, K: PolygonSink>(simd: S, from: f32x8<S>, [c, p]: [&Point; 2], sink: &mut K) -> f32x8<S> {
+fn quad<S: Simd, K: PolygonSink>(simd: S, from: f32x16<S>, [c, p]: [&Point; 2], sink: &mut K) -> f32x16<S> {
     let (by, to) = (pairs(simd, c), pairs(simd, p));
     let bend = from - by - (by - to);
     // |second derivative| / 8 / tolerance, for n² pieces.
@@ -145,7 +145,7 @@ fn quad<S: Simd, K: PolygonSink>(simd: S, from: f32x8<S>, [c, p]: [&Point; 2], s
 
 /// As [`quad`], of a cubic one.
 #[inline(always)]
-fn cubic<S: Simd, K: PolygonSink>(simd: S, from: f32x8<S>, [c1, c2, p]: [&Point; 3], sink: &mut K) -> f32x8<S> {
+fn cubic<S: Simd, K: PolygonSink>(simd: S, from: f32x16<S>, [c1, c2, p]: [&Point; 3], sink: &mut K) -> f32x16<S> {
     let (one, two, to) = (pairs(simd, c1), pairs(simd, c2), pairs(simd, p));
     let (bend1, bend2) = (from - one - (one - two), one - two - (two - to));
     let (d1, d2) = (squared_length(bend1), squared_length(bend2));
@@ -172,7 +172,7 @@ fn cubic<S: Simd, K: PolygonSink>(simd: S, from: f32x8<S>, [c1, c2, p]: [&Point;
 }
 
 #[inline(always)]
-fn squared_length<S: Simd>(pairs: f32x8<S>) -> f32 {
+fn squared_length<S: Simd>(pairs: f32x16<S>) -> f32 {
     let [x, y, ..] = (pairs * pairs).to_array();
     x + y
 }
@@ -180,7 +180,7 @@ fn squared_length<S: Simd>(pairs: f32x8<S>) -> f32 {
 /// What curves of up to eight pieces have in common, as nearly all have no more.
 struct Few {
     /// The parameters of their points, each twice.
-    times: [[f32; 8]; 2],
+    times: [f32; 16],
     count: usize,
     pieces: f32,
     /// Twice what [`balance_share`] says.
@@ -192,13 +192,13 @@ impl Few {
 
     /// Those of one piece, of two, …
     const ALL: [Self; Self::MOST] = {
-        let mut all = [const { Self { times: [[0.0; 8]; 2], count: 0, pieces: 0.0, double_share: 0.0 } }; Self::MOST];
+        let mut all = [const { Self { times: [0.0; 16], count: 0, pieces: 0.0, double_share: 0.0 } }; Self::MOST];
         let mut index = 0;
         while index < Self::MOST {
             let pieces = (index + 1) as f32;
             let mut lane = 0;
             while lane < 16 {
-                all[index].times[lane / 8][lane % 8] = (lane / 2 + 1) as f32 * (1.0 / pieces);
+                all[index].times[lane] = (lane / 2 + 1) as f32 * (1.0 / pieces);
                 lane += 1;
             }
             all[index].count = index + 1;
@@ -221,12 +221,17 @@ impl Few {
 
     /// Writes the points of the curve `at` their parameters, and instead of the last the curve's end.
     #[inline(always)]
-    fn write<S: Simd, K: PolygonSink>(&self, simd: S, at: impl Fn(f32x8<S>) -> f32x8<S>, end: f32x8<S>, sink: &mut K) {
-        let numbers = f32x8::simd_from(simd, [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0]);
-        let [low, high] = &self.times;
-        let low = numbers.simd_eq(self.pieces).select(end, at(f32x8::load_array_ref(simd, low)));
-        let high = numbers.simd_eq(self.pieces - 4.0).select(end, at(f32x8::load_array_ref(simd, high)));
-        let points: [Point; Self::MOST] = bytemuck::cast([low.to_array(), high.to_array()]);
+    fn write<S: Simd, K: PolygonSink>(
+        &self,
+        simd: S,
+        at: impl Fn(f32x16<S>) -> f32x16<S>,
+        end: f32x16<S>,
+        sink: &mut K,
+    ) {
+        let numbers =
+            f32x16::simd_from(simd, [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0, 5.0, 5.0, 6.0, 6.0, 7.0, 7.0, 8.0, 8.0]);
+        let points = numbers.simd_eq(self.pieces).select(end, at(f32x16::load_array_ref(simd, &self.times)));
+        let points: [Point; Self::MOST] = bytemuck::cast(points.to_array());
         sink.lines(&points, self.count);
     }
 }

@@ -1,7 +1,7 @@
 //! Edges listed by band.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::{f32x16, i32x16};
 
 use super::bar::Bar;
 use super::cut::Cutter;
@@ -475,14 +475,18 @@ fn list_by_band<S: Simd>(
         }
     };
     loop {
-        while let Some((four, after)) = rest.split_first_chunk::<4>() {
-            let y = i32x8::load_array(simd, bytemuck::cast(*four));
+        while let Some((eight, after)) = rest.split_first_chunk::<8>() {
+            let y = i32x16::load_array(simd, bytemuck::cast(*eight));
             // x, in every other lane, does not matter.
-            let here = ((y - first_top) >> band_shift).simd_eq(band as i32).to_bitmask() as u32 | 0x55;
-            if here != 0xff {
+            let here = ((y - first_top) >> band_shift).simd_eq(band as i32).to_bitmask() as u32 | 0x5555;
+            let stay = here.trailing_ones() as usize / 2;
+            if stay < 8 {
+                if let Some(last) = stay.checked_sub(1).and_then(|last| eight.get(last)) {
+                    (rest, end, last_y) = (rest.get(stay..).unwrap_or(&[]), end + stay as u32, last.y);
+                }
                 break;
             }
-            (rest, end, last_y) = (after, end + 4, four[3].y);
+            (rest, end, last_y) = (after, end + 8, eight[7].y);
         }
         let Some(([point], after)) = rest.split_first_chunk::<1>() else { break };
         let next = band_of(point.y);
@@ -505,22 +509,24 @@ fn list_by_band<S: Simd>(
 #[inline(always)]
 pub(crate) fn extent<S: Simd>(simd: S, points: &[Point]) -> Option<[f32; 4]> {
     let first = *points.first()?;
-    let start = f32x8::load_array(simd, [first.x, first.y, first.x, first.y, first.x, first.y, first.x, first.y]);
+    let start = f32x16::load_array(simd, bytemuck::cast([first; 8]));
     let (mut low, mut high, mut finite) = (start, start, start * 0.0);
-    let (blocks, rest) = points.as_chunks::<4>();
-    let mut last = [first; 4];
+    let (blocks, rest) = points.as_chunks::<8>();
+    let mut last = [first; 8];
     for (last, p) in last.iter_mut().zip(rest) {
         *last = *p;
     }
     for block in blocks.iter().chain(std::iter::once(&last)) {
-        let v = f32x8::load_array(simd, bytemuck::cast(*block));
+        let v = f32x16::load_array(simd, bytemuck::cast(*block));
         low = min_f32(v, low);
         high = max_f32(v, high);
         finite += v * 0.0;
     }
-    if finite.to_array() != [0.0; 8] {
+    if finite.to_array() != [0.0; 16] {
         return None;
     }
+    let ((low, low_too), (high, high_too)) = (low.split(), high.split());
+    let (low, high) = (min_f32(low, low_too), max_f32(high, high_too));
     // Written out: iterators over every second lane are calls.
     let smaller = |a: f32, b: f32| if b < a { b } else { a };
     let [a, b, c, d, e, f, g, h] = low.to_array();

@@ -1,11 +1,11 @@
 //! Edges: the straight pieces of outlines, in 24.8 fixed point.
 
-use fearless_simd::f32x8;
+use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
 
 use crate::geom::Point;
 use crate::num::fixed;
-use crate::num::lanes::{round_f64, truncate_f32};
+use crate::num::lanes::{round_f64, truncate_sixteen_f32};
 
 /// A corner of an outline, in 1/256 pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -94,12 +94,12 @@ impl FineLine {
     }
 }
 
-/// Four points in fixed point. Not a closure: those are not always inlined, and lose the SIMD level then.
+/// Eight points in fixed point. Not a closure: those are not always inlined, and lose the SIMD level then.
 #[inline(always)]
-fn rounded<S: Simd>(simd: S, block: [Point; 4]) -> [FixedPoint; 4] {
+fn rounded<S: Simd>(simd: S, block: [Point; 8]) -> [FixedPoint; 8] {
     // A float times a power of two is exact, so that it is rounded once.
-    let v = f32x8::load_array(simd, bytemuck::cast(block)) * fixed::ONE as f32;
-    bytemuck::cast(truncate_f32(v.round_ties_even()).to_array())
+    let v = f32x16::load_array(simd, bytemuck::cast(block)) * fixed::ONE as f32;
+    bytemuck::cast(truncate_sixteen_f32(v.round_ties_even()).to_array())
 }
 
 /// A closed polygon's corners in fixed point, the first one once more at the end, if it is not there.
@@ -117,12 +117,12 @@ pub(super) fn append_closed<S: Simd>(simd: S, polygon: &[Point], out: &mut Vec<F
 /// Appends device points within ±2^22 as fixed point, rounded to nearest, ties to even.
 #[inline(always)]
 pub(super) fn append_fixed<S: Simd>(simd: S, points: &[Point], out: &mut Vec<FixedPoint>) {
-    let (blocks, rest) = points.as_chunks::<4>();
+    let (blocks, rest) = points.as_chunks::<8>();
     for block in blocks {
         out.extend_from_slice(&rounded(simd, *block));
     }
     if !rest.is_empty() {
-        let mut last = [Point::ZERO; 4];
+        let mut last = [Point::ZERO; 8];
         for (last, p) in last.iter_mut().zip(rest) {
             *last = *p;
         }
