@@ -1,6 +1,7 @@
 //! A coverage mask: one byte a pixel.
 
-use super::pixmap::{Limits, PixmapRef, allocate};
+use super::aligned::allocate;
+use super::pixmap::{Limits, PixmapRef};
 use crate::error::{Error, Result};
 
 /// What of a picture becomes the mask's coverage.

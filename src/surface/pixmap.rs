@@ -1,5 +1,6 @@
 //! Pixels: owned, borrowed, and borrowed to write.
 
+use super::aligned::AlignedBytes;
 use crate::color::{Color, demultiply_u8, premultiply_u8};
 use crate::error::{Error, Result};
 use crate::geom::IntRect;
@@ -49,20 +50,12 @@ impl Default for Limits {
     }
 }
 
-/// `length` zero bytes, or an error where the system has no memory for them.
-pub(crate) fn allocate(length: usize) -> Result<Vec<u8>> {
-    let mut data = Vec::new();
-    data.try_reserve_exact(length).map_err(|_| Error::Limit(format!("no memory for {length} bytes of pixels")))?;
-    data.resize(length, 0);
-    Ok(data)
-}
-
 /// A picture that owns its pixels: premultiplied RGBA8, rows top down, no padding.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pixmap {
     width: u32,
     height: u32,
-    data: Vec<u8>,
+    data: AlignedBytes,
 }
 
 impl Pixmap {
@@ -77,7 +70,7 @@ impl Pixmap {
 
     /// One transparent pixel: what is left where a picture was moved out.
     pub(crate) fn placeholder() -> Self {
-        Self { width: 1, height: 1, data: vec![0; 4] }
+        Self { width: 1, height: 1, data: vec![0; 4].into() }
     }
 
     /// A transparent picture of a size checked against `limits`.
@@ -86,7 +79,7 @@ impl Pixmap {
     /// As [`Pixmap::new`].
     pub fn with_limits(width: u32, height: u32, limits: Limits) -> Result<Self> {
         limits.check(width, height)?;
-        Ok(Self { width, height, data: allocate(width as usize * height as usize * 4)? })
+        Ok(Self { width, height, data: AlignedBytes::zeros(width as usize * height as usize * 4)? })
     }
 
     /// A picture that holds `data`: premultiplied RGBA8, rows top down. Pixels whose colour exceeds
@@ -97,7 +90,7 @@ impl Pixmap {
     pub fn from_vec(width: u32, height: u32, data: Vec<u8>) -> Result<Self> {
         Limits::default().check(width, height)?;
         check_length(width, height, data.len())?;
-        Ok(Self { width, height, data })
+        Ok(Self { width, height, data: data.into() })
     }
 
     /// A picture from straight-alpha RGBA8, rows top down; each pixel is premultiplied, rounded to nearest.
@@ -113,7 +106,7 @@ impl Pixmap {
 
     /// The pixels with straight alpha, rounded to nearest; transparent ones are 0, 0, 0, 0.
     pub fn to_straight(&self) -> Vec<u8> {
-        let mut data = self.data.clone();
+        let mut data = self.data.to_vec();
         for pixel in data.as_chunks_mut::<4>().0 {
             *pixel = demultiply_u8(*pixel);
         }
@@ -140,9 +133,9 @@ impl Pixmap {
         &mut self.data
     }
 
-    /// The pixels, without copying.
+    /// The pixels: in the memory that they are in, moved to its start (they begin at a cache line) unless they came from a `Vec`.
     pub fn into_vec(self) -> Vec<u8> {
-        self.data
+        self.data.into_vec()
     }
 
     /// The premultiplied pixel at (x, y), or `None` outside.
