@@ -1,7 +1,7 @@
 //! Small pieces of lane arithmetic that every level rounds alike.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x8, f32x16, f64x2, i32x4, i32x8, i32x16, u8x16, u8x32, u8x64, u16x8, u16x16, u16x32};
+use fearless_simd::{Level, f32x8, f32x16, f64x2, i32x4, i32x8, i32x16, u8x16, u8x64, u16x8, u16x16, u16x32};
 
 /// An array of `f` of each index. `array::from_fn` and `array::map` are not always inlined, and vectors in them are then reckoned
 /// without the caller's SIMD level: every operation becomes a call.
@@ -71,11 +71,10 @@ pub(crate) fn min_i32<S: Simd, V: SimdBase<S, Element = i32>>(a: V, b: V) -> V {
     a.min(b)
 }
 
-/// The least lane of each of four vectors.
+/// [`least_of_each`] of vectors twice as long.
 #[inline(always)]
 #[expect(clippy::disallowed_methods, reason = "integer minimum is the same at every level")]
-pub(crate) fn least_of_sixteen<S: Simd>(vectors: [i32x16<S>; 4]) -> [i32; 4] {
-    let [a, b, c, d] = vectors;
+pub(crate) fn least_of_sixteen<S: Simd>([a, b, c, d]: [i32x16<S>; 4]) -> [i32; 4] {
     let ((a, e), (b, f), (c, g), (d, h)) = (a.split(), b.split(), c.split(), d.split());
     least_of_each([a.min(e), b.min(f), c.min(g), d.min(h)])
 }
@@ -134,39 +133,31 @@ pub(crate) fn high_row_product<S: Simd>(v: u16x32<S>, factor: u16) -> u16x32<S> 
     low.unzip_high(high)
 }
 
-/// Sixteen bytes as words, each twice: the coverage of the two halves of a block's row, in both lanes of its pixel.
+/// Sixteen bytes as words, each twice: the coverage of a block's row, in both lanes of its pixel.
 #[inline(always)]
-pub(crate) fn doubled_words<S: Simd>(simd: S, bytes: &[u8; 16]) -> [u16x16<S>; 2] {
+pub(crate) fn doubled_row<S: Simd>(simd: S, bytes: &[u8; 16]) -> u16x32<S> {
     let bytes = u8x16::load_array_ref(simd, bytes);
     if has_byte_shuffle(simd) {
-        // Indices 16 and up read whatever the level gives, hence the `& 255`, which costs nothing:
-        // index 255 is zero at AVX2, so the compiler knows. One load and one shuffle a half.
-        let both = u8x32::block_splat(bytes);
-        let low = u8x32::load_array(simd, const { pixel_indices(0) });
-        let high = u8x32::load_array(simd, const { pixel_indices(8) });
-        let low: u16x16<S> = both.swizzle_dyn_within_blocks(low).bitcast();
-        let high: u16x16<S> = both.swizzle_dyn_within_blocks(high).bitcast();
-        [low & 255, high & 255]
+        // Indices 16 and up read whatever the level gives, hence the `& 255`, which costs nothing at AVX2:
+        // index 255 is zero there, so the compiler knows. One load and one shuffle a vector.
+        let indices = u8x64::load_array(simd, const { pixel_indices() });
+        let words: u16x32<S> = u8x64::block_splat(bytes).swizzle_dyn_within_blocks(indices).bitcast();
+        words & 255
     } else {
         let zero = u8x16::splat(simd, 0);
         let low: u16x8<S> = bytes.zip_low(zero).bitcast();
         let high: u16x8<S> = bytes.zip_high(zero).bitcast();
-        [low.zip_low(low).combine(low.zip_high(low)), high.zip_low(high).combine(high.zip_high(high))]
+        let (low, high) =
+            (low.zip_low(low).combine(low.zip_high(low)), high.zip_low(high).combine(high.zip_high(high)));
+        low.combine(high)
     }
 }
 
-/// [`doubled_words`] of a whole row.
+/// The two halves of [`doubled_row`].
 #[inline(always)]
-pub(crate) fn doubled_row<S: Simd>(simd: S, bytes: &[u8; 16]) -> u16x32<S> {
-    if has_byte_shuffle(simd) {
-        let indices = u8x64::load_array(simd, const { row_indices() });
-        let words: u16x32<S> =
-            u8x64::block_splat(u8x16::load_array_ref(simd, bytes)).swizzle_dyn_within_blocks(indices).bitcast();
-        words & 255
-    } else {
-        let [low, high] = doubled_words(simd, bytes);
-        low.combine(high)
-    }
+pub(crate) fn doubled_words<S: Simd>(simd: S, bytes: &[u8; 16]) -> [u16x16<S>; 2] {
+    let (low, high) = doubled_row(simd, bytes).split();
+    [low, high]
 }
 
 /// Whether the level moves bytes by a vector of indices in one instruction. Known when compiled.
@@ -180,19 +171,8 @@ fn has_byte_shuffle<S: Simd>(simd: S) -> bool {
     }
 }
 
-/// Shuffle indices that put byte `first + i` into the low byte of both lanes of pixel i.
-const fn pixel_indices(first: u8) -> [u8; 32] {
-    let mut indices = [255; 32];
-    let mut lane = 0;
-    while lane < 16 {
-        indices[2 * lane] = first + (lane / 2) as u8;
-        lane += 1;
-    }
-    indices
-}
-
-/// [`pixel_indices`] of all sixteen.
-const fn row_indices() -> [u8; 64] {
+/// Shuffle indices that put byte i into the low byte of both lanes of pixel i.
+const fn pixel_indices() -> [u8; 64] {
     let mut indices = [255; 64];
     let mut lane = 0;
     while lane < 32 {

@@ -81,7 +81,7 @@ impl SimdLevel {
 /// for it. Everything called from `$body` that should use the level must be `#[inline(always)]`, or
 /// enter `simd.vectorize` itself.
 ///
-/// With `RUSTFLAGS="--cfg rastrum_best_level_only"` SSE2 is left out, which takes a quarter off the time of a build: for
+/// With `RUSTFLAGS="--cfg rastrum_best_level_only"` SSE2 is left out, so that it builds sooner: for
 /// measuring one change after another, not for use.
 ///
 /// SSE4.2 is not listed on purpose: each level is another copy of the renderer, and SSE2 covers what machines between it and

@@ -133,7 +133,8 @@ impl Pixmap {
         &mut self.data
     }
 
-    /// The pixels: in the memory that they are in, moved to its start (they begin at a cache line) unless they came from a `Vec`.
+    /// The pixels, without another allocation: as they came, or moved by less than 64 bytes, since those of a picture made here begin at a
+    /// cache line.
     pub fn into_vec(self) -> Vec<u8> {
         self.data.into_vec()
     }
