@@ -248,9 +248,9 @@ impl SmallAreas {
         while left != 0 {
             let lane = left.trailing_zeros() as usize & (LANES - 1);
             left &= left - 1;
-            // What is negative lies far beyond the end.
+            // What is negative lies far beyond the end; where addresses have 32 bits, it may end before it starts, and is no range.
             let place = places[lane] as u32 as usize;
-            let span = cells.get_mut(place..place + SPAN).and_then(|span| span.first_chunk_mut::<SPAN>());
+            let span = cells.get_mut(place..place.wrapping_add(SPAN)).and_then(|span| span.first_chunk_mut::<SPAN>());
             let Some(cells) = span else { continue };
             // Where there is no lower row, zeros are taken: a branch would be wrong half of the time.
             cells[0] = cells[0].wrapping_add(a[lane]);
