@@ -6,7 +6,7 @@ use crate::color::Color;
 use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, Paint, Span, ToPaint};
 use crate::filter::pixels;
 use crate::geom::{FixedRect, IntRect, Point, Rect, Transform};
-use crate::paint::PreparedPaint;
+use crate::paint::{PreparedPaint, Shader};
 use crate::path::stretch::stretches;
 use crate::path::{LineCap, LineJoin, Path, Radii, Stroke};
 use crate::style::{Antialias, FillRule};
@@ -178,11 +178,15 @@ impl Canvas<'_> {
     /// whole, has to wait for itself.
     #[inline(always)]
     fn record(&mut self, paint: &Paint, geometry: Geometry, bounds: IntRect) {
+        let clip = self.clip_of(bounds);
         let bounds = bounds.intersect(self.state.bounds);
         if bounds.is_empty() {
             return;
         }
-        let prepared = PreparedPaint::new(&paint.shader, self.state.to_pixels(), paint.opacity);
+        let prepared = match &paint.shader {
+            Shader::Solid(color) => PreparedPaint::solid(*color, paint.opacity),
+            shader => PreparedPaint::new(shader, self.state.to_pixels(), paint.opacity),
+        };
         if matches!(prepared, PreparedPaint::Nothing) && paint.blend_mode == BlendMode::SourceOver {
             return;
         }
@@ -194,10 +198,24 @@ impl Canvas<'_> {
             paint: index,
             antialias: paint.antialias,
             blend_mode: paint.blend_mode,
-            clip: self.state.clip,
+            clip,
             bounds,
             opaque,
         }));
+    }
+
+    /// The current clip for what lies within `bounds`: that around it, where it is a rectangle that leaves all of them whole, as the
+    /// viewports of drawings inside drawings mostly do.
+    #[inline(always)]
+    fn clip_of(&self, bounds: IntRect) -> ClipId {
+        let mut clip = self.state.clip;
+        while clip != ClipId::NONE
+            && let Some(node) = self.list.clip(clip)
+            && node.leaves_whole(bounds)
+        {
+            clip = node.parent;
+        }
+        clip
     }
 
     /// Records the shadow of a draw: the same draw in a recording of its own, on a surface that holds what of it the

@@ -43,8 +43,16 @@ impl Default for State {
 
 impl State {
     /// From user space to the recording's pixels.
-    pub(super) fn to_pixels(self) -> Transform {
-        let Some(to_list) = self.to_list else { return self.transform };
+    #[inline(always)]
+    pub(super) fn to_pixels(&self) -> Transform {
+        match self.to_list {
+            None => self.transform,
+            Some(to_list) => self.to_pixels_of_list(to_list),
+        }
+    }
+
+    #[cold]
+    fn to_pixels_of_list(&self, to_list: Transform) -> Transform {
         let mut all = to_list.pre_concat(self.transform);
         // Turned there and back again, what is left of a turn is rounding.
         let least = (all.sx.abs() + all.sy.abs()) * 1e-6;

@@ -85,6 +85,14 @@ pub(crate) struct ClipNode {
     pub(crate) bounds: IntRect,
 }
 
+impl ClipNode {
+    /// Whether it leaves all of these pixels as they are, its parents aside: asked without a look at coverage.
+    pub(crate) fn leaves_whole(&self, pixels: IntRect) -> bool {
+        matches!(&self.kind, ClipKind::Geometry { geometry: Geometry::Rect(rect), .. }
+            if rect.whole_pixels().contains(pixels))
+    }
+}
+
 /// One shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Draw {

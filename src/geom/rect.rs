@@ -146,6 +146,7 @@ pub(crate) struct FixedRect {
 impl FixedRect {
     /// A finite rectangle with left ≤ right and top ≤ bottom, each edge rounded to nearest; edges beyond the range of
     /// fixed point stop there.
+    #[inline(always)]
     pub(crate) fn new(rect: Rect) -> Self {
         let fixed = |v: f32| fixed::from_f32(v.clamp(-fixed::LIMIT, fixed::LIMIT));
         Self { left: fixed(rect.left), top: fixed(rect.top), right: fixed(rect.right), bottom: fixed(rect.bottom) }
@@ -172,9 +173,16 @@ impl FixedRect {
     }
 
     /// The pixels that it touches.
+    #[inline(always)]
     pub(crate) fn pixels(self) -> IntRect {
         let up = |v: i32| (v + fixed::ONE - 1) >> fixed::SHIFT;
         IntRect::from_ltrb(self.left >> fixed::SHIFT, self.top >> fixed::SHIFT, up(self.right), up(self.bottom))
+    }
+
+    /// The pixels that it covers whole.
+    pub(crate) fn whole_pixels(self) -> IntRect {
+        let up = |v: i32| (v + fixed::ONE - 1) >> fixed::SHIFT;
+        IntRect::from_ltrb(up(self.left), up(self.top), self.right >> fixed::SHIFT, self.bottom >> fixed::SHIFT)
     }
 
     /// The same rectangle moved by whole pixels.

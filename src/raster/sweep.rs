@@ -6,7 +6,7 @@ use fearless_simd::{f32x8, f64x2, i32x8, u8x16, u16x16};
 use super::cell::{Column, FULL, Strip};
 use crate::geom::FixedRect;
 use crate::num::fixed;
-use crate::num::lanes::{high_product, min_i32, min_u16, truncate_f32};
+use crate::num::lanes::{high_product, max_i32, min_i32, min_u16, truncate_f32};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, BlockCoverage, MaskBlock, Rows};
 
 /// How accumulated values become coverage.
@@ -32,7 +32,7 @@ pub(crate) trait BlockSink<S: Simd> {
     fn block(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>);
     /// Coverage of the block `index`, in which a rectangle starts or ends.
     #[inline(always)]
-    fn side(&mut self, simd: S, index: usize, side: &RectSide) {
+    fn side(&mut self, simd: S, index: usize, side: &RectSide<'_>) {
         self.block(simd, index, BlockCoverage::of(&side.mask(simd)));
     }
     /// Blocks `start..end` are covered by the same value along each row.
@@ -183,64 +183,66 @@ fn transposed<S: Simd>(simd: S, [a, b, c, d]: [i32x8<S>; 4]) -> MaskBlock {
 pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top: i32, blocks: usize, sink: &mut K) {
     /// Fraction bits of a block's side.
     const BLOCK_SHIFT: u32 = fixed::SHIFT + BLOCK_WIDTH.ilog2();
-    /// The part of 256 that lies between two positions, for as many pixels from `start` on as there are.
-    #[inline(always)]
-    fn parts<const N: usize>(start: i32, low: i32, high: i32) -> [u32; N] {
-        let mut parts = [0; N];
-        for (pixel, part) in (start..).step_by(fixed::ONE as usize).zip(&mut parts) {
-            *part = (high.min(pixel + fixed::ONE) - low.max(pixel)).max(0) as u32;
-        }
-        parts
-    }
     let (left, right) = (rect.left.max(0), rect.right.min((blocks as i32) << BLOCK_SHIFT));
     if left >= right || rect.top >= top + ((BLOCK_HEIGHT as i32) << fixed::SHIFT) || rect.bottom <= top {
         return;
     }
-    let heights: [u32; BLOCK_HEIGHT] = parts(top, rect.top, rect.bottom);
-    let mut rows = [0; BLOCK_HEIGHT];
-    for (row, height) in rows.iter_mut().zip(heights) {
-        *row = scaled_area(height << fixed::SHIFT);
+    let tops = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) + top;
+    let low = max_i32(tops, i32x8::splat(simd, rect.top));
+    let high = min_i32(tops + fixed::ONE, i32x8::splat(simd, rect.bottom));
+    let heights = max_i32(high - low, i32x8::splat(simd, 0));
+    let whole_rows = heights.simd_eq(fixed::ONE).to_bitmask() == 255;
+    let mut rows = [u8::MAX; BLOCK_HEIGHT];
+    if !whole_rows {
+        for (row, lane) in rows.iter_mut().zip(scaled_areas(heights << fixed::SHIFT).to_array()) {
+            *row = lane as u8;
+        }
     }
+    let heights = &heights.to_array();
     let (first, last) = ((left >> BLOCK_SHIFT) as usize, ((right - 1) >> BLOCK_SHIFT) as usize);
     let side = |index: usize| (index as i32) << BLOCK_SHIFT;
     let whole = |index: usize| left <= side(index) && right >= side(index + 1);
     let start = if whole(first) { first } else { first + 1 };
     let end = if whole(last) { last + 1 } else { last };
     if start > first && sink.wants(first) {
-        sink.side(simd, first, &RectSide { heights, left: left - side(first), right: right - side(first) });
+        let (left, right) = (left - side(first), right - side(first));
+        sink.side(simd, first, &RectSide { heights, whole_rows, left, right });
     }
     if start < end {
         sink.run(simd, start, end, &rows);
     }
     if end <= last && (last > first || start == first) && sink.wants(last) {
-        sink.side(simd, last, &RectSide { heights, left: left - side(last), right: right - side(last) });
+        let (left, right) = (left - side(last), right - side(last));
+        sink.side(simd, last, &RectSide { heights, whole_rows, left, right });
     }
 }
 
 /// What of a block a rectangle covers that does not cover it from side to side.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RectSide {
+pub(crate) struct RectSide<'a> {
     /// How much of each row's height is covered, of 256.
-    pub(crate) heights: [u32; BLOCK_HEIGHT],
+    pub(crate) heights: &'a [i32; BLOCK_HEIGHT],
+    /// Whether all of it is, of all rows.
+    pub(crate) whole_rows: bool,
     /// From where to where, in 1/256 pixel from the block's left side.
     left: i32,
     right: i32,
 }
 
-impl RectSide {
+impl RectSide<'_> {
     /// The coverage of a row of which `height` / 256 is covered.
     #[inline(always)]
-    pub(crate) fn row<S: Simd>(&self, simd: S, height: u32) -> [u8; BLOCK_WIDTH] {
+    pub(crate) fn row<S: Simd>(&self, simd: S, height: i32) -> [u8; BLOCK_WIDTH] {
         covered_row(simd, self.left, self.right, height)
     }
 
     #[inline(always)]
     pub(crate) fn mask<S: Simd>(&self, simd: S) -> MaskBlock {
         // Most rows are covered over their whole height.
-        let whole = self.row(simd, fixed::ONE as u32);
+        let whole = self.row(simd, fixed::ONE);
         let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
         for (row, height) in mask.iter_mut().zip(self.heights) {
-            *row = match height {
+            *row = match *height {
                 0 => continue,
                 256 => whole,
                 part => self.row(simd, part),
@@ -253,9 +255,9 @@ impl RectSide {
 /// The coverage of a block's row between `left` and `right`, in 1/256 pixel from the block's left side, for `height` / 256
 /// of the row.
 #[inline(always)]
-fn covered_row<S: Simd>(simd: S, left: i32, right: i32, height: u32) -> [u8; BLOCK_WIDTH] {
+fn covered_row<S: Simd>(simd: S, left: i32, right: i32, height: i32) -> [u8; BLOCK_WIDTH] {
     const WIDTH: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
-    let value = |width: i32| scaled_area(height * width as u32);
+    let value = |width: i32| scaled_area((height * width) as u32);
     let splat = |value: i32| u8x16::splat(simd, value as u8);
     let columns = u8x16::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
     let zero = u8x16::splat(simd, 0);
@@ -302,6 +304,12 @@ fn scaled<S: Simd>(quarters: u16x16<S>) -> u16x16<S> {
 #[inline(always)]
 fn scaled_area(area: u32) -> u8 {
     ((((area >> 1) + u32::from(HALF)) * u32::from(SCALE)) >> 16) as u8
+}
+
+/// [`scaled_area`] of eight.
+#[inline(always)]
+fn scaled_areas<S: Simd>(areas: i32x8<S>) -> i32x8<S> {
+    (((areas >> 1) + i32::from(HALF)) * i32::from(SCALE)) >> 16
 }
 
 /// Quarters of two columns' sums, which are 1/2^15 of a pixel, modulo 2^16: of the first in even lanes, of the second in odd ones.

@@ -138,8 +138,11 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
         }
         for item in &band.items {
             let place = order;
-            scratch.occlusion.release(place);
             order += 1;
+            if scratch.occlusion.is_gone(place) {
+                continue;
+            }
+            scratch.occlusion.release(place);
             if scratch.kept.drop_hidden(place) {
                 continue;
             }

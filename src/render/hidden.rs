@@ -113,11 +113,20 @@ fn claim_blocks<S: Simd>(
     );
 }
 
-/// Claims the blocks that a rectangle covers whole; false where it is too narrow for any.
+/// Claims the blocks that a rectangle covers whole; false where it is too narrow for any. One of which nothing is seen is noted: it need not
+/// be looked at again.
 #[inline(always)]
 fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, order: u32) -> bool {
     const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
     const STRIP: i32 = (BLOCK_HEIGHT as i32) << fixed::SHIFT;
+    let bounds = rect.pixels();
+    let strip_of = |y: i32| ((y - frame.top).max(0) as usize / BLOCK_HEIGHT).min(frame.strips);
+    let strips = strip_of(bounds.top)..strip_of(bounds.bottom + (BLOCK_HEIGHT as i32 - 1));
+    let blocks = bounds.left.max(0) as usize / BLOCK_WIDTH..(bounds.right.max(0) as usize).div_ceil(BLOCK_WIDTH);
+    if !occlusion.is_seen(strips, blocks) {
+        occlusion.set_gone(order);
+        return true;
+    }
     let (first, end) = ((rect.left.max(0) + BLOCK - 1) / BLOCK, rect.right.max(0) / BLOCK);
     if first >= end {
         return false;

@@ -21,6 +21,8 @@ pub(super) struct Occlusion {
     claims: Vec<Claim>,
     /// How many blocks shapes hide.
     count: usize,
+    /// One bit an item of the band: of those that are known to be hidden as a whole.
+    gone: Vec<u64>,
 }
 
 /// The order of claims that are not given back: shapes have lower ones.
@@ -38,6 +40,7 @@ impl Occlusion {
     /// Nothing is hidden.
     pub(super) fn reset(&mut self, blocks: usize, strips: usize) {
         self.claims.clear();
+        self.gone.clear();
         self.count = 0;
         self.words = blocks.div_ceil(64);
         self.hidden.clear();
@@ -135,6 +138,47 @@ impl Occlusion {
         None
     }
 
+    /// Notes that nothing of the item at place `order` can be seen.
+    #[inline(always)]
+    pub(super) fn set_gone(&mut self, order: u32) {
+        let index = order as usize / 64;
+        if index >= self.gone.len() {
+            self.gone.resize(index + 1, 0);
+        }
+        if let Some(word) = self.gone.get_mut(index) {
+            *word |= 1 << (order % 64);
+        }
+    }
+
+    /// Whether that was noted: the item then has no claims, either.
+    #[inline(always)]
+    pub(super) fn is_gone(&self, order: u32) -> bool {
+        self.gone.get(order as usize / 64).is_some_and(|word| word >> (order % 64) & 1 == 1)
+    }
+
+    /// Whether some of `blocks` in one of `strips` is not hidden.
+    #[inline(always)]
+    pub(super) fn is_seen(&self, strips: Range<usize>, blocks: Range<usize>) -> bool {
+        if self.words == 1 {
+            let asked = in_first_word(&blocks);
+            let words = self.hidden.get(strips).unwrap_or(&[]);
+            return words.iter().fold(0, |seen, word| seen | asked & !word) != 0;
+        }
+        self.is_seen_in_words(strips, blocks)
+    }
+
+    #[inline(never)]
+    fn is_seen_in_words(&self, strips: Range<usize>, blocks: Range<usize>) -> bool {
+        let mut seen = 0;
+        for index in blocks.start / 64..blocks.end.div_ceil(64) {
+            let asked = between(blocks.start, blocks.end, index * 64);
+            for strip in strips.clone() {
+                seen |= self.hidden.get(strip * self.words + index).map_or(0, |word| asked & !word);
+            }
+        }
+        seen != 0
+    }
+
     /// The shape at place `order` is about to be painted.
     #[inline(always)]
     pub(super) fn release(&mut self, order: u32) {
@@ -148,6 +192,25 @@ impl Occlusion {
     /// Claims those of `blocks` in each of `strips` that no shape further in front has.
     #[inline(always)]
     pub(super) fn claim(&mut self, order: u32, strips: Range<usize>, blocks: Range<usize>) {
+        // Canvases of up to 1,024 pixels have one word a row.
+        if self.words == 1 {
+            let wanted = in_first_word(&blocks);
+            let words = self.hidden.get_mut(strips.clone()).unwrap_or(&mut []);
+            for (place, word) in (strips.start as u32..).zip(words) {
+                let blocks = wanted & !*word;
+                if blocks != 0 {
+                    *word |= blocks;
+                    self.count += blocks.count_ones() as usize;
+                    self.claims.push(Claim { order, word: place, blocks });
+                }
+            }
+            return;
+        }
+        self.claim_in_words(order, strips, blocks);
+    }
+
+    #[inline(never)]
+    fn claim_in_words(&mut self, order: u32, strips: Range<usize>, blocks: Range<usize>) {
         for index in blocks.start / 64..blocks.end.div_ceil(64) {
             let wanted = between(blocks.start, blocks.end, index * 64);
             for strip in strips.clone() {
@@ -169,6 +232,13 @@ impl Occlusion {
 #[inline(always)]
 fn between(first: usize, end: usize, start: usize) -> u64 {
     (u64::MAX << first.saturating_sub(start).min(63)) & (u64::MAX >> (start + 64).saturating_sub(end).min(63))
+}
+
+/// Those of `blocks` that lie in a strip's first word, as bits of it.
+#[inline(always)]
+fn in_first_word(blocks: &Range<usize>) -> u64 {
+    let end = blocks.end.min(64);
+    if blocks.start < end { between(blocks.start, end, 0) } else { 0 }
 }
 
 /// The part of a strip in which something of a shape can be seen.
@@ -215,6 +285,38 @@ mod tests {
         assert_eq!((occlusion.visible_run(1, 1, 70), occlusion.visible_run(1, 66, 70)), (Some((1, 66)), None));
         occlusion.release(3);
         assert!(!occlusion.is_some() && occlusion.visible(1, bounds) == (1, 70));
+    }
+
+    #[test]
+    fn items_of_which_nothing_is_seen_are_noted() {
+        let mut occlusion = Occlusion::default();
+        // All over words' ends, or in one word; and a block or a strip more each way.
+        for (blocks, first, end) in [(140, 60, 130), (40, 7, 33), (64, 0, 63)] {
+            occlusion.reset(blocks, 4);
+            occlusion.claim(9, 1..3, first..end);
+            let hidden: Vec<_> = (0..4 * blocks).filter(|at| occlusion.is_hidden(at / blocks, at % blocks)).collect();
+            let claimed = |at: &usize| (1..3).contains(&(at / blocks)) && (first..end).contains(&(at % blocks));
+            assert_eq!(hidden, (0..4 * blocks).filter(claimed).collect::<Vec<_>>());
+            assert!(!occlusion.is_seen(1..3, first..end) && !occlusion.is_seen(2..3, first + 4..first + 5));
+            assert!(first == 0 || occlusion.is_seen(1..3, first - 1..end));
+            assert!(occlusion.is_seen(1..3, first..end + 1));
+            assert!(occlusion.is_seen(0..3, first..end) && occlusion.is_seen(1..4, first..end));
+            // Nothing cannot be seen, and hides nothing.
+            assert!(!occlusion.is_seen(2..2, 0..blocks));
+            for nothing in [0..0, 5..5, 64..64] {
+                assert!(!occlusion.is_seen(0..4, nothing.clone()));
+                occlusion.claim(8, 0..4, nothing);
+            }
+            assert_eq!(occlusion.count(), 2 * (end - first));
+        }
+        for order in [0, 63, 64, 200] {
+            assert!(!occlusion.is_gone(order));
+            occlusion.set_gone(order);
+        }
+        let gone: Vec<u32> = (0..300).filter(|order| occlusion.is_gone(*order)).collect();
+        assert_eq!(gone, [0, 63, 64, 200]);
+        occlusion.reset(140, 4);
+        assert!(!occlusion.is_gone(63));
     }
 
     #[test]

@@ -218,7 +218,7 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
     }
 
     #[inline(always)]
-    fn side(&mut self, simd: S, index: usize, side: &RectSide) {
+    fn side(&mut self, simd: S, index: usize, side: &RectSide<'_>) {
         let plain = self.look.clip.is_none() && self.look.opacity == 255;
         match self.look.source {
             Source::Solid(color) if plain && color[3] == 255 && self.look.blend_mode == BlendMode::SourceOver => {
@@ -419,7 +419,7 @@ impl Painter<'_, '_, '_> {
 
     /// An opaque colour where a rectangle starts or ends: most rows share their coverage.
     #[inline(never)]
-    fn paint_side<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide, color: [u8; 4]) {
+    fn paint_side<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide<'_>, color: [u8; 4]) {
         simd.vectorize(
             #[inline(always)]
             || self.paint_side_inner(simd, index, side, color),
@@ -427,14 +427,21 @@ impl Painter<'_, '_, '_> {
     }
 
     #[inline(always)]
-    fn paint_side_inner<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide, color: [u8; 4]) {
-        let whole = OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE as u32));
+    fn paint_side_inner<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide<'_>, color: [u8; 4]) {
+        let whole = OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE));
         self.rows.with_block(
             index,
             #[inline(always)]
             |mut rows| {
+                if side.whole_rows {
+                    rows.each_one(
+                        #[inline(always)]
+                        |pixels| whole.over(simd, pixels),
+                    );
+                    return;
+                }
                 rows.with(
-                    &side.heights,
+                    side.heights,
                     #[inline(always)]
                     |height, pixels| match height {
                         0 => {}

@@ -267,6 +267,17 @@ pub(super) struct BlockRows<'a> {
 }
 
 impl BlockRows<'_> {
+    /// Applies `f` to the pixels of all rows, downwards.
+    #[inline(always)]
+    pub(super) fn each_one(&mut self, mut f: impl FnMut(&mut [u8; ROW_BYTES])) {
+        let mut rest = &mut *self.bytes;
+        for _ in 0..self.count {
+            let Some(pixels) = rest.first_chunk_mut::<ROW_BYTES>() else { return };
+            f(pixels);
+            rest = rest.get_mut(self.stride..).unwrap_or(&mut []);
+        }
+    }
+
     /// Applies `f` to each value and the pixels of its row, downwards.
     #[inline(always)]
     pub(super) fn with<T>(&mut self, values: &[T; BLOCK_HEIGHT], mut f: impl FnMut(&T, &mut [u8; ROW_BYTES])) {

@@ -173,6 +173,73 @@ fn filling_a_clip_is_filling_its_path() {
 }
 
 #[test]
+fn rectangles_that_leave_a_shape_whole_clip_as_their_coverage_does() {
+    const SIDE: u32 = 72;
+    let mut seed = 5_u32;
+    let mut random = |n: u32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) % n
+    };
+    let mut left_whole = 0;
+    for case in 0..240 {
+        let mut between = |least: u32, most: u32| least as f32 + random((most - least) * 16) as f32 / 16.0;
+        let clips: Vec<Rect> =
+            (0..1 + case % 3).map(|_| rect(between(0, 12), between(0, 12), between(52, 70), between(52, 70))).collect();
+        let (at, size) = ((between(4, 60), between(4, 60)), between(1, 16));
+        let antialias = [Antialias::Analytic, Antialias::Exact, Antialias::Supersample(4), Antialias::None][case % 4];
+        let mut path = Path::new();
+        path.move_to(at).quad_to((at.0 + size, at.1 - size), (at.0 + size, at.1 + size)).line_to((at.0, at.1 + size));
+        let shape = |canvas: &mut Canvas<'_>| match case % 5 {
+            0 => canvas.fill_rect(rect(at.0, at.1, at.0 + size, at.1 + size), &Paint::new(HALF_BLACK)),
+            1 => canvas.stroke_path(&path, &Stroke { width: 5.0, ..Stroke::default() }, &Paint::new(Color::BLACK)),
+            2 => canvas.fill(HALF_BLACK),
+            _ => canvas.fill_path(&path, FillRule::NonZero, &Paint::new(Color::BLACK)),
+        };
+        // A clip between them that is no rectangle, every other time.
+        let mut hexagon = Path::new();
+        hexagon.move_to((36.0, 0.0)).line_to((70.0, 20.0)).line_to((66.0, 60.0)).line_to((36.0, 72.0));
+        hexagon.line_to((3.0, 55.0)).line_to((0.0, 18.0)).close();
+        let by_rectangles = drawn(SIDE, SIDE, |canvas| {
+            for (index, clip) in clips.iter().enumerate() {
+                canvas.clip_rect(*clip, antialias);
+                if index == 0 && case % 2 == 0 {
+                    canvas.clip_path(&hexagon, FillRule::NonZero, antialias);
+                }
+            }
+            shape(canvas);
+        });
+        let by_masks = drawn(SIDE, SIDE, |canvas| {
+            for (index, clip) in clips.iter().enumerate() {
+                let paint = Paint::new(Color::BLACK).with_antialias(antialias);
+                let coverage = drawn(SIDE, SIDE, |canvas| canvas.fill_rect(*clip, &paint));
+                canvas.clip_mask(Mask::from_pixmap(coverage.as_ref(), MaskKind::Alpha).unwrap(), 0, 0);
+                if index == 0 && case % 2 == 0 {
+                    canvas.clip_path(&hexagon, FillRule::NonZero, antialias);
+                }
+            }
+            shape(canvas);
+        });
+        // Where an outline is cut at the bounds of all clips, the cut is rounded to 1/256 pixel: a sample may fall to its other side.
+        let rounding = if matches!(antialias, Antialias::Supersample(_)) { 16 } else { 1 };
+        let near = by_rectangles.data().iter().zip(by_masks.data()).all(|(a, b)| a.abs_diff(*b) <= rounding);
+        assert!(near, "case {case}: {clips:?}, {at:?}, {size}, {antialias:?}");
+        let is_whole = case % 5 != 2
+            && clips.iter().all(|clip| {
+                clip.left + 4.0 < at.0
+                    && clip.top + 4.0 < at.1 - size
+                    && at.0 + size < clip.right - 4.0
+                    && at.1 + size < clip.bottom - 4.0
+            });
+        if is_whole && case % 2 == 1 {
+            assert!(by_rectangles == drawn(SIDE, SIDE, shape), "case {case}: {clips:?}, {at:?}, {size}, {antialias:?}");
+            left_whole += 1;
+        }
+    }
+    // Some are, most are cut.
+    assert!((10..100).contains(&left_whole), "{left_whole}");
+}
+
+#[test]
 fn clip_bounds_are_those_of_all_clips() {
     let mut canvas = Canvas::new(20, 20).unwrap();
     assert_eq!(canvas.clip_bounds(), IntRect::from_ltrb(0, 0, 20, 20));
