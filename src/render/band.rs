@@ -5,6 +5,8 @@
 //! by the clip, fetches colours ([`paint`](crate::paint)) and blends them ([`blend`](crate::blend)) into the
 //! band's rows, or into those of the layer that is open.
 
+use std::ops::Range;
+
 use fearless_simd::Simd;
 
 use super::bar::paint_bar;
@@ -14,6 +16,7 @@ use super::hidden::{find_hidden, find_visible};
 use super::kept::Kept;
 use super::layer::{LayerBuffer, mask_layer, open_surface};
 use super::occlusion::Occlusion;
+use super::opaque_rect::paint_opaque_rect;
 use super::painter::{Look, Source, paint_coverage, paint_kept, paint_rect};
 use super::plan::Plan;
 use super::surface::Surface;
@@ -99,6 +102,13 @@ impl<'a> Frame<'a> {
         IntRect { left: bounds.left.max(first), right: bounds.right.min(end), ..bounds }
     }
 
+    /// The band's strips that touch `bounds` (device pixels).
+    #[inline(always)]
+    pub(super) fn strips_of(&self, bounds: IntRect) -> Range<usize> {
+        let strip_of = |y: i32| ((y - self.top).max(0) as usize / BLOCK_HEIGHT).min(self.strips);
+        strip_of(bounds.top)..strip_of(bounds.bottom + (BLOCK_HEIGHT as i32 - 1))
+    }
+
     /// Device y of a strip's first row.
     #[inline(always)]
     pub(super) fn strip_top(&self, strip: usize) -> i32 {
@@ -152,7 +162,12 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                     continue;
                 }
                 let BandScratch { layers, occlusion, .. } = &mut *scratch;
-                paint_rect(simd, frame, rect, color, &mut open_surface(frame, target, layers), occlusion);
+                let surface = &mut open_surface(frame, target, layers);
+                if color[3] == 255 {
+                    paint_opaque_rect(simd, frame, rect, color, surface, occlusion);
+                } else {
+                    paint_rect(simd, frame, rect, color, surface, occlusion);
+                }
                 continue;
             }
             if let Content::Bar(index) = item.content

@@ -120,10 +120,8 @@ fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, ord
     const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
     const STRIP: i32 = (BLOCK_HEIGHT as i32) << fixed::SHIFT;
     let bounds = rect.pixels();
-    let strip_of = |y: i32| ((y - frame.top).max(0) as usize / BLOCK_HEIGHT).min(frame.strips);
-    let strips = strip_of(bounds.top)..strip_of(bounds.bottom + (BLOCK_HEIGHT as i32 - 1));
     let blocks = bounds.left.max(0) as usize / BLOCK_WIDTH..(bounds.right.max(0) as usize).div_ceil(BLOCK_WIDTH);
-    if !occlusion.is_seen(strips, blocks) {
+    if !occlusion.is_seen(frame.strips_of(bounds), blocks) {
         occlusion.set_gone(order);
         return true;
     }
@@ -174,11 +172,10 @@ pub(super) fn find_visible(frame: &Frame<'_>, scratch: &mut BandScratch, bounds:
     if !occlusion.is_some() {
         return true;
     }
-    let strip_of = |y: i32| ((y - frame.top).max(0) as usize / BLOCK_HEIGHT).min(frame.strips);
-    let (first, end) = (strip_of(bounds.top), strip_of(bounds.bottom + (BLOCK_HEIGHT as i32 - 1)));
+    let strips = frame.strips_of(bounds);
     visible.resize(frame.strips, (0, 0));
     let mut seen = false;
-    for (strip, visible) in visible.iter_mut().enumerate().take(end).skip(first) {
+    for (strip, visible) in visible.iter_mut().enumerate().take(strips.end).skip(strips.start) {
         *visible = occlusion.visible(strip, bounds);
         seen |= visible.0 < visible.1;
     }

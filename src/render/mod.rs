@@ -13,6 +13,7 @@ mod hidden;
 mod kept;
 mod layer;
 mod occlusion;
+mod opaque_rect;
 mod painter;
 mod parts;
 mod plan;

@@ -9,15 +9,15 @@ use super::kept::{Kept, KeptCoverage, Place};
 use super::occlusion::Occlusion;
 use super::surface::{NO_PIXELS, ROW_BYTES, StripRows, Surface, fill_line};
 use crate::blend::{
-    BlendMode, OpaqueRow, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row,
-    over_solid_full, over_solid_row, scale_mask_row, scale_mask_row_by,
+    BlendMode, composite_block, mix_pixels_row, over_opaque_row, over_pixels_full, over_pixels_row, over_solid_full,
+    over_solid_row, scale_mask_row, scale_mask_row_by,
 };
 use crate::display_list::Draw;
 use crate::geom::FixedRect;
 use crate::num::fixed;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
-use crate::raster::sweep::{BlockSink, RectSide, sweep_rect};
+use crate::raster::sweep::{BlockSink, sweep_rect};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, BlockCoverage, MaskBlock};
 
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
@@ -81,7 +81,7 @@ fn paint_coverage_inner<S: Simd>(
     }
 }
 
-/// Draws a rectangle in one colour over what is there: its coverage is reckoned strip by strip.
+/// Draws a rectangle in one translucent colour over what is there: its coverage is reckoned strip by strip.
 #[inline(never)]
 pub(super) fn paint_rect<S: Simd>(
     simd: S,
@@ -109,8 +109,7 @@ fn paint_rect_inner<S: Simd>(
     let mut look = Look { source: Source::Solid(color), blend_mode: BlendMode::SourceOver, opacity: 255, clip: None };
     let pattern = &look.pattern();
     let bounds = rect.pixels();
-    let strip_of = |y: i32| ((y - frame.top).max(0) as usize / BLOCK_HEIGHT).min(frame.strips);
-    for strip in strip_of(bounds.top)..strip_of(bounds.bottom + (BLOCK_HEIGHT as i32 - 1)) {
+    for strip in frame.strips_of(bounds) {
         let (first, end) = occlusion.visible(strip, bounds);
         if first < end {
             let (rows, top) = (surface.strip(strip), frame.strip_top(strip));
@@ -218,17 +217,6 @@ impl<S: Simd> BlockSink<S> for Painter<'_, '_, '_> {
     }
 
     #[inline(always)]
-    fn side(&mut self, simd: S, index: usize, side: &RectSide<'_>) {
-        let plain = self.look.clip.is_none() && self.look.opacity == 255;
-        match self.look.source {
-            Source::Solid(color) if plain && color[3] == 255 && self.look.blend_mode == BlendMode::SourceOver => {
-                self.paint_side(simd, index, side, color);
-            }
-            _ => self.block(simd, index, BlockCoverage::of(&side.mask(simd))),
-        }
-    }
-
-    #[inline(always)]
     fn run(&mut self, simd: S, mut start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
         let Some(occlusion) = self.occlusion else { return self.visible_run(simd, start, end, rows) };
         while let Some((from, to)) = occlusion.visible_run(self.strip, start, end) {
@@ -246,9 +234,11 @@ impl Painter<'_, '_, '_> {
         {
             let whole = || rows.iter().take(self.rows.count()).all(|coverage| matches!(coverage, 0 | 255));
             match self.look.blend_mode {
-                BlendMode::SourceOver => return self.fill_run(simd, start, end, rows, color, color[3] == 255),
+                BlendMode::SourceOver => {
+                    return fill_run(simd, &mut self.rows, start, end, rows, color, color[3] == 255);
+                }
                 // What is covered whole is replaced, whatever the colour's alpha.
-                BlendMode::Source if whole() => return self.fill_run(simd, start, end, rows, color, true),
+                BlendMode::Source if whole() => return fill_run(simd, &mut self.rows, start, end, rows, color, true),
                 _ => {}
             }
         }
@@ -288,75 +278,6 @@ impl Painter<'_, '_, '_> {
             }
         }
         true
-    }
-
-    /// Source-over of one colour along whole blocks of constant coverage. `replaces` says that nothing stays of what full
-    /// coverage covers.
-    #[inline(never)]
-    fn fill_run<S: Simd>(
-        &mut self,
-        simd: S,
-        start: usize,
-        end: usize,
-        rows: &[u8; BLOCK_HEIGHT],
-        color: [u8; 4],
-        replaces: bool,
-    ) {
-        simd.vectorize(
-            #[inline(always)]
-            || self.fill_run_inner(simd, start, end, rows, color, replaces),
-        );
-    }
-
-    #[inline(always)]
-    fn fill_run_inner<S: Simd>(
-        &mut self,
-        simd: S,
-        start: usize,
-        end: usize,
-        rows: &[u8; BLOCK_HEIGHT],
-        color: [u8; 4],
-        replaces: bool,
-    ) {
-        let mut lines = self.rows.lines(start, end);
-        // Nearly always all rows are covered whole.
-        if *rows == [u8::MAX; BLOCK_HEIGHT] {
-            if replaces {
-                lines.each(
-                    #[inline(always)]
-                    |line| fill_line(simd, line, color),
-                );
-            } else {
-                lines.each(
-                    #[inline(always)]
-                    |line| {
-                        let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
-                        for pixels in blocks {
-                            over_solid_full(simd, pixels, color);
-                        }
-                        over_cut_row(simd, tail, color, u8::MAX);
-                    },
-                );
-            }
-            return;
-        }
-        lines.with(
-            rows,
-            #[inline(always)]
-            |&coverage, line| {
-                if coverage == 0 {
-                    return;
-                }
-                if coverage == 255 && replaces {
-                    return fill_line(simd, line, color);
-                }
-                let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
-                for pixels in blocks {
-                    over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
-                }
-                over_cut_row(simd, tail, color, coverage);
-            },
-        );
     }
 
     /// Draws one block by its final coverage.
@@ -411,42 +332,6 @@ impl Painter<'_, '_, '_> {
                         if let Some(mask) = mask.get(row) {
                             over_opaque_row(simd, pixels, color, mask);
                         }
-                    },
-                );
-            },
-        );
-    }
-
-    /// An opaque colour where a rectangle starts or ends: most rows share their coverage.
-    #[inline(never)]
-    fn paint_side<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide<'_>, color: [u8; 4]) {
-        simd.vectorize(
-            #[inline(always)]
-            || self.paint_side_inner(simd, index, side, color),
-        );
-    }
-
-    #[inline(always)]
-    fn paint_side_inner<S: Simd>(&mut self, simd: S, index: usize, side: &RectSide<'_>, color: [u8; 4]) {
-        let whole = OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE));
-        self.rows.with_block(
-            index,
-            #[inline(always)]
-            |mut rows| {
-                if side.whole_rows {
-                    rows.each_one(
-                        #[inline(always)]
-                        |pixels| whole.over(simd, pixels),
-                    );
-                    return;
-                }
-                rows.with(
-                    side.heights,
-                    #[inline(always)]
-                    |height, pixels| match height {
-                        0 => {}
-                        256 => whole.over(simd, pixels),
-                        part => over_opaque_row(simd, pixels, color, &side.row(simd, *part)),
                     },
                 );
             },
@@ -515,6 +400,75 @@ impl Painter<'_, '_, '_> {
             },
         );
     }
+}
+
+/// Source-over of one colour along whole blocks of constant coverage. `replaces` says that nothing stays of what full
+/// coverage covers.
+#[inline(never)]
+pub(super) fn fill_run<S: Simd>(
+    simd: S,
+    strip: &mut StripRows<'_>,
+    start: usize,
+    end: usize,
+    rows: &[u8; BLOCK_HEIGHT],
+    color: [u8; 4],
+    replaces: bool,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || fill_run_inner(simd, strip, start, end, rows, color, replaces),
+    );
+}
+
+#[inline(always)]
+fn fill_run_inner<S: Simd>(
+    simd: S,
+    strip: &mut StripRows<'_>,
+    start: usize,
+    end: usize,
+    rows: &[u8; BLOCK_HEIGHT],
+    color: [u8; 4],
+    replaces: bool,
+) {
+    let mut lines = strip.lines(start, end);
+    // Nearly always all rows are covered whole.
+    if *rows == [u8::MAX; BLOCK_HEIGHT] {
+        if replaces {
+            lines.each(
+                #[inline(always)]
+                |line| fill_line(simd, line, color),
+            );
+        } else {
+            lines.each(
+                #[inline(always)]
+                |line| {
+                    let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
+                    for pixels in blocks {
+                        over_solid_full(simd, pixels, color);
+                    }
+                    over_cut_row(simd, tail, color, u8::MAX);
+                },
+            );
+        }
+        return;
+    }
+    lines.with(
+        rows,
+        #[inline(always)]
+        |&coverage, line| {
+            if coverage == 0 {
+                return;
+            }
+            if coverage == 255 && replaces {
+                return fill_line(simd, line, color);
+            }
+            let (blocks, tail) = line.as_chunks_mut::<ROW_BYTES>();
+            for pixels in blocks {
+                over_solid_row(simd, pixels, color, &[coverage; BLOCK_WIDTH]);
+            }
+            over_cut_row(simd, tail, color, coverage);
+        },
+    );
 }
 
 /// Source-over of one colour on a part of a block's row, by the same coverage throughout.
