@@ -44,15 +44,15 @@ impl Default for State {
 impl State {
     /// From user space to the recording's pixels.
     #[inline(always)]
-    pub(super) fn to_pixels(&self) -> Transform {
+    pub(super) fn to_pixels(self) -> Transform {
         match self.to_list {
             None => self.transform,
-            Some(to_list) => self.to_pixels_of_list(to_list),
+            Some(to_list) => self.through(to_list),
         }
     }
 
     #[cold]
-    fn to_pixels_of_list(&self, to_list: Transform) -> Transform {
+    fn through(&self, to_list: Transform) -> Transform {
         let mut all = to_list.pre_concat(self.transform);
         // Turned there and back again, what is left of a turn is rounding.
         let least = (all.sx.abs() + all.sy.abs()) * 1e-6;

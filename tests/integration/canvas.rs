@@ -190,10 +190,10 @@ fn rectangles_that_leave_a_shape_whole_clip_as_their_coverage_does() {
         let mut path = Path::new();
         path.move_to(at).quad_to((at.0 + size, at.1 - size), (at.0 + size, at.1 + size)).line_to((at.0, at.1 + size));
         let shape = |canvas: &mut Canvas<'_>| match case % 5 {
-            0 => canvas.fill_rect(rect(at.0, at.1, at.0 + size, at.1 + size), &Paint::new(HALF_BLACK)),
-            1 => canvas.stroke_path(&path, &Stroke { width: 5.0, ..Stroke::default() }, &Paint::new(Color::BLACK)),
+            0 => canvas.fill_rect(rect(at.0, at.1, at.0 + size, at.1 + size), Paint::new(HALF_BLACK)),
+            1 => canvas.stroke_path(&path, &Stroke { width: 5.0, ..Stroke::default() }, Paint::new(Color::BLACK)),
             2 => canvas.fill(HALF_BLACK),
-            _ => canvas.fill_path(&path, FillRule::NonZero, &Paint::new(Color::BLACK)),
+            _ => canvas.fill_path(&path, FillRule::NonZero, Paint::new(Color::BLACK)),
         };
         // A clip between them that is no rectangle, every other time.
         let mut hexagon = Path::new();
