@@ -51,6 +51,7 @@ impl State {
         }
     }
 
+    /// The same by way of the device, for an effect's own picture.
     #[cold]
     fn through(&self, to_list: Transform) -> Transform {
         let mut all = to_list.pre_concat(self.transform);
