@@ -53,7 +53,7 @@ impl Renderer {
     /// Takes over what was recorded for `frame` so far, to be prepared by a thread that has nothing to do, and gives an empty
     /// list to go on with. What sections may hold: [`section`].
     pub(crate) fn take_section(&mut self, list: DisplayList, frame: IntRect, settings: RenderSettings) -> DisplayList {
-        let settings = settings.resolved();
+        let settings = settings.resolved(frame);
         let section = Arc::new(Section::new(list, frame, &mut self.spare_chunks));
         self.sections.push(Arc::clone(&section));
         crate::pool::offer(settings.threads, move || section.prepare(settings));
@@ -77,8 +77,8 @@ impl Renderer {
         if list.commands.is_empty() && self.sections.is_empty() {
             return Ok(());
         }
-        let settings = settings.resolved();
         let frame = IntRect::from_xywh(0, 0, target.width(), target.height());
+        let settings = settings.resolved(frame);
         let (plan, planned) = plan::plan(list, frame, settings);
         let chunks = self.prepare(list, &plan, frame, settings);
         let sections = self.sections.iter();

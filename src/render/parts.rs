@@ -35,8 +35,8 @@ impl<'a> Parts<'a> {
 
     /// As [`new`](Self::new); effects are only seen in `seen`, pixels of the recording.
     fn of(list: &'a DisplayList, extent: IntRect, seen: IntRect, settings: RenderSettings) -> Result<Self> {
-        let settings = RenderSettings { band_height: BAND_HEIGHT, ..settings.resolved() };
         let frame = IntRect::from_xywh(0, 0, extent.width(), extent.height());
+        let settings = settings.with_band_height(BAND_HEIGHT).resolved(frame);
         // Pictures in it come first, so that effects in each other do not hold one surface for each.
         let (plan, planned) = plan(list, seen, settings);
         planned?;

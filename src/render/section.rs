@@ -117,6 +117,8 @@ mod tests {
     use crate::style::Antialias;
 
     /// One rectangle over rows 3 to 40.
+    const FRAME: IntRect = IntRect { left: 0, top: 0, right: 64, bottom: 64 };
+
     fn section() -> Section {
         let mut list = DisplayList::default();
         let bounds = IntRect::from_ltrb(0, 3, 10, 40);
@@ -130,7 +132,7 @@ mod tests {
             bounds,
             opaque: true,
         }));
-        Section::new(list, IntRect::from_xywh(0, 0, 64, 64), &mut VecDeque::new())
+        Section::new(list, FRAME, &mut VecDeque::new())
     }
 
     /// How many items each band has, of each part.
@@ -143,8 +145,9 @@ mod tests {
 
     #[test]
     fn edges_are_listed_once_for_each_height_of_bands() {
-        let (section, settings) = (section(), RenderSettings::default().resolved());
-        let (lower, higher) = (settings.with_band_height(16), settings.with_band_height(32));
+        let (section, settings) = (section(), RenderSettings::default());
+        let (lower, higher) =
+            (settings.with_band_height(16).resolved(FRAME), settings.with_band_height(32).resolved(FRAME));
         assert!(section.prepare(lower) && !section.prepare(lower));
         assert_eq!(bands(&section, lower), [[1, 1, 1, 0]]);
         assert_eq!(bands(&section, higher), [[1, 1]]);
@@ -153,7 +156,7 @@ mod tests {
 
     #[test]
     fn what_another_thread_has_is_left_to_it() {
-        let (section, settings) = (Arc::new(section()), RenderSettings::default().resolved());
+        let (section, settings) = (Arc::new(section()), RenderSettings::default().resolved(FRAME));
         let held = section.parts[0].edges.lock().unwrap();
         assert!(!section.prepare(settings));
         drop(held);

@@ -73,7 +73,7 @@ fn every_level_thread_count_and_band_height_gives_the_same_bytes() {
         assert!(expected.as_chunks::<4>().0.iter().any(|p| *p != [255; 4]), "nothing was drawn");
         for level in SimdLevel::available() {
             for threads in [1, 2, 3, 8] {
-                for band_height in [8, 32, 64] {
+                for band_height in [0, 8, 32, 64] {
                     let settings = settings.with_level(level).with_threads(threads).with_band_height(band_height);
                     assert!(render(settings, antialias) == expected, "{antialias:?} differs with {settings:?}");
                 }
@@ -162,7 +162,7 @@ fn what_is_prepared_while_the_rest_is_recorded_gives_the_same_bytes() {
     let expected = draw_long(settings.with_threads(1), [32, 32, 32]);
     assert!(expected.windows(2).all(|pair| pair[0] != pair[1]), "frames are alike");
     for threads in [2, 5] {
-        for heights in [[32, 32, 32], [8, 64, 16]] {
+        for heights in [[0, 0, 0], [32, 32, 32], [8, 64, 16]] {
             let drawn = draw_long(settings.with_threads(threads), heights);
             assert!(drawn == expected, "{threads} threads, bands of {heights:?} rows");
         }
