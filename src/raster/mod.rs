@@ -28,6 +28,7 @@ pub(crate) mod kernel;
 pub mod line;
 mod orientation;
 pub mod polygon;
+pub(crate) mod rect;
 pub(crate) mod round_rect;
 pub(crate) mod sample;
 mod stair;

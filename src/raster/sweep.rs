@@ -4,9 +4,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, f64x2, i32x8, u8x16, u16x16};
 
 use super::cell::{Column, FULL, Strip};
-use crate::geom::FixedRect;
-use crate::num::fixed;
-use crate::num::lanes::{high_product, max_i32, min_i32, min_u16, truncate_f32};
+use crate::num::lanes::{high_product, min_i32, min_u16, truncate_f32};
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, BlockCoverage, MaskBlock, Rows};
 
 /// How accumulated values become coverage.
@@ -30,11 +28,6 @@ pub(crate) trait BlockSink<S: Simd> {
     }
     /// Coverage of the block `index` (16 columns each) of the strip.
     fn block(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>);
-    /// Coverage of the block `index`, in which a rectangle starts or ends.
-    #[inline(always)]
-    fn side(&mut self, simd: S, index: usize, side: &RectSide<'_>) {
-        self.block(simd, index, BlockCoverage::of(&side.mask(simd)));
-    }
     /// Blocks `start..end` are covered by the same value along each row.
     fn run(&mut self, simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]);
 }
@@ -177,102 +170,6 @@ fn transposed<S: Simd>(simd: S, [a, b, c, d]: [i32x8<S>; 4]) -> MaskBlock {
     mask
 }
 
-/// Reports the coverage of a rectangle in one strip, whose top is at `top` (fixed point), in blocks `..blocks`: as the
-/// sweep of its edges would.
-#[inline(always)]
-pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top: i32, blocks: usize, sink: &mut K) {
-    /// Fraction bits of a block's side.
-    const BLOCK_SHIFT: u32 = fixed::SHIFT + BLOCK_WIDTH.ilog2();
-    let (left, right) = (rect.left.max(0), rect.right.min((blocks as i32) << BLOCK_SHIFT));
-    if left >= right || rect.top >= top + ((BLOCK_HEIGHT as i32) << fixed::SHIFT) || rect.bottom <= top {
-        return;
-    }
-    let tops = i32x8::simd_from(simd, [0, 256, 512, 768, 1024, 1280, 1536, 1792]) + top;
-    let low = max_i32(tops, i32x8::splat(simd, rect.top));
-    let high = min_i32(tops + fixed::ONE, i32x8::splat(simd, rect.bottom));
-    let heights = max_i32(high - low, i32x8::splat(simd, 0));
-    let whole_rows = heights.simd_eq(fixed::ONE).to_bitmask() == 255;
-    let mut rows = [u8::MAX; BLOCK_HEIGHT];
-    if !whole_rows {
-        for (row, lane) in rows.iter_mut().zip(scaled_areas(heights << fixed::SHIFT).to_array()) {
-            *row = lane as u8;
-        }
-    }
-    let heights = &heights.to_array();
-    let (first, last) = ((left >> BLOCK_SHIFT) as usize, ((right - 1) >> BLOCK_SHIFT) as usize);
-    let side = |index: usize| (index as i32) << BLOCK_SHIFT;
-    let whole = |index: usize| left <= side(index) && right >= side(index + 1);
-    let start = if whole(first) { first } else { first + 1 };
-    let end = if whole(last) { last + 1 } else { last };
-    if start > first && sink.wants(first) {
-        let (left, right) = (left - side(first), right - side(first));
-        sink.side(simd, first, &RectSide { heights, whole_rows, left, right });
-    }
-    if start < end {
-        sink.run(simd, start, end, &rows);
-    }
-    if end <= last && (last > first || start == first) && sink.wants(last) {
-        let (left, right) = (left - side(last), right - side(last));
-        sink.side(simd, last, &RectSide { heights, whole_rows, left, right });
-    }
-}
-
-/// What of a block a rectangle covers that does not cover it from side to side.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RectSide<'a> {
-    /// How much of each row's height is covered, of 256.
-    pub(crate) heights: &'a [i32; BLOCK_HEIGHT],
-    /// Whether all of it is, of all rows.
-    pub(crate) whole_rows: bool,
-    /// From where to where, in 1/256 pixel from the block's left side.
-    left: i32,
-    right: i32,
-}
-
-impl RectSide<'_> {
-    /// The coverage of a row of which `height` / 256 is covered.
-    #[inline(always)]
-    pub(crate) fn row<S: Simd>(&self, simd: S, height: i32) -> [u8; BLOCK_WIDTH] {
-        covered_row(simd, self.left, self.right, height)
-    }
-
-    #[inline(always)]
-    pub(crate) fn mask<S: Simd>(&self, simd: S) -> MaskBlock {
-        // Most rows are covered over their whole height.
-        let whole = self.row(simd, fixed::ONE);
-        let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
-        for (row, height) in mask.iter_mut().zip(self.heights) {
-            *row = match *height {
-                0 => continue,
-                256 => whole,
-                part => self.row(simd, part),
-            };
-        }
-        mask
-    }
-}
-
-/// The coverage of a block's row between `left` and `right`, in 1/256 pixel from the block's left side, for `height` / 256
-/// of the row.
-#[inline(always)]
-fn covered_row<S: Simd>(simd: S, left: i32, right: i32, height: i32) -> [u8; BLOCK_WIDTH] {
-    const WIDTH: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
-    let value = |width: i32| scaled_area((height * width) as u32);
-    let splat = |value: i32| u8x16::splat(simd, value as u8);
-    let columns = u8x16::simd_from(simd, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
-    let zero = u8x16::splat(simd, 0);
-    let (left, right) = (left.max(0), right.min(WIDTH));
-    // The pixels in which it starts and ends, which may be one.
-    let (first, last) = (left >> fixed::SHIFT, right >> fixed::SHIFT);
-    let inner = u8x16::splat(simd, value(fixed::ONE));
-    let mut row = columns.simd_lt(splat(last)).select(inner, zero);
-    row = columns.simd_eq(splat(last)).select(u8x16::splat(simd, value(right - (last << fixed::SHIFT))), row);
-    row = columns.simd_lt(splat(first)).select(zero, row);
-    let end = right.min((first + 1) << fixed::SHIFT);
-    row = columns.simd_eq(splat(first)).select(u8x16::splat(simd, value(end - left)), row);
-    row.to_array()
-}
-
 /// Reports blocks `start..end`, where nothing changes along x.
 #[inline(always)]
 fn uniform<S: Simd, K: BlockSink<S>>(simd: S, coverage: u16x16<S>, start: usize, end: usize, sink: &mut K) {
@@ -302,13 +199,13 @@ fn scaled<S: Simd>(quarters: u16x16<S>) -> u16x16<S> {
 
 /// As [`scaled`], for areas in 1/65,536.
 #[inline(always)]
-fn scaled_area(area: u32) -> u8 {
+pub(super) fn scaled_area(area: u32) -> u8 {
     ((((area >> 1) + u32::from(HALF)) * u32::from(SCALE)) >> 16) as u8
 }
 
 /// [`scaled_area`] of eight.
 #[inline(always)]
-fn scaled_areas<S: Simd>(areas: i32x8<S>) -> i32x8<S> {
+pub(super) fn scaled_areas<S: Simd>(areas: i32x8<S>) -> i32x8<S> {
     (((areas >> 1) + i32::from(HALF)) * i32::from(SCALE)) >> 16
 }
 
@@ -350,31 +247,6 @@ fn samples<S: Simd>(first: i32x8<S>, second: i32x8<S>, scale: f32) -> u16x16<S> 
 mod tests {
     use super::*;
     use crate::num::level::{SimdLevel, dispatch};
-    use crate::raster::cell::Accumulator;
-    use crate::raster::edge::Edge;
-    use crate::raster::kernel::add_edge;
-
-    const BLOCKS: usize = 5;
-
-    #[derive(Default)]
-    struct Picture(Vec<[u8; BLOCKS * BLOCK_WIDTH]>);
-
-    impl<S: Simd> BlockSink<S> for Picture {
-        fn block(&mut self, _simd: S, index: usize, coverage: BlockCoverage<'_>) {
-            let BlockCoverage { mask, covered, full } = coverage;
-            let known = BlockCoverage::of(mask);
-            assert_eq!((covered, full), (known.covered, known.full), "{mask:?}");
-            for (row, values) in self.0.iter_mut().zip(mask) {
-                row[index * BLOCK_WIDTH..(index + 1) * BLOCK_WIDTH].copy_from_slice(values);
-            }
-        }
-
-        fn run(&mut self, _simd: S, start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
-            for (row, value) in self.0.iter_mut().zip(rows) {
-                row[start * BLOCK_WIDTH..end * BLOCK_WIDTH].fill(*value);
-            }
-        }
-    }
 
     #[test]
     fn coverage_is_the_area_rounded_at_every_level() {
@@ -396,43 +268,6 @@ mod tests {
                     assert_eq!(lanes(wound), expected, "{area} at {level:?}");
                 }
             });
-        }
-    }
-
-    #[test]
-    fn rectangles_are_covered_as_the_sweep_of_their_edges_says() {
-        let mut seed = 5_u32;
-        let mut random = |n: i32| {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (seed >> 8) as i32 % n
-        };
-        for case in 0..600 {
-            // Some whole pixels and blocks among them, and some that end above or below the strip.
-            let snap = [1, 256, 4096][case % 3];
-            let side = |v: i32| v / snap * snap;
-            let (x, y) = (side(random(70 * 256)), random(12 * 256) - 512);
-            let rect = FixedRect {
-                left: x,
-                top: y,
-                right: (x + side(1 + random(60 * 256))).min((BLOCKS * BLOCK_WIDTH) as i32 * 256),
-                bottom: y + 1 + random(9 * 256),
-            };
-            for level in SimdLevel::available() {
-                let empty = || Picture(vec![[0; BLOCKS * BLOCK_WIDTH]; BLOCK_HEIGHT]);
-                let (mut swept, mut direct) = (empty(), empty());
-                dispatch!(level, simd => {
-                    let mut cells = Accumulator::default();
-                    cells.resize(BLOCKS * BLOCK_WIDTH, 1);
-                    let FixedRect { left, top, right, bottom } = rect;
-                    for (x, y0, y1) in [(left, top, bottom), (right, bottom, top)] {
-                        let edge = Edge { x0: x, y0, x1: x, y1 };
-                        add_edge(simd, &mut cells, edge, 0, 1, &[]);
-                    }
-                    sweep(simd, &mut cells.strip(0).unwrap(), BLOCKS, CoverageRule::NonZero, &mut swept);
-                    sweep_rect(simd, rect, 0, BLOCKS, &mut direct);
-                });
-                assert_eq!(swept.0, direct.0, "{rect:?} at {level:?}");
-            }
         }
     }
 }

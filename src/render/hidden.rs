@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 use super::band::{BandScratch, Frame};
 use super::coverage::{accumulate, rectangle};
 use super::kept::KeepSink;
-use super::occlusion::Occlusion;
+use super::occlusion::{HALF_WIDTH, Halves, Occlusion};
 use crate::display_list::{Command, Draw};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::fixed;
@@ -19,6 +19,8 @@ const EDGES_PER_BLOCK: usize = 24;
 /// So many edges are accumulated in search of hidden blocks in any case, more only if each block costs no more.
 const FAIR_TRIAL: usize = 256;
 const WORK_PER_BLOCK: usize = 100;
+/// The width of half a block.
+const HALF: i32 = (HALF_WIDTH as i32) << fixed::SHIFT;
 
 /// Lets the band's opaque shapes claim the blocks that they cover whole, front to back.
 #[inline(never)]
@@ -113,19 +115,17 @@ fn claim_blocks<S: Simd>(
     );
 }
 
-/// Claims the blocks that a rectangle covers whole; false where it is too narrow for any. One of which nothing is seen is noted: it need not
+/// Claims the blocks, and halves of blocks, that a rectangle covers whole; false where it is too narrow for any. One of which nothing is seen is noted: it need not
 /// be looked at again.
 #[inline(always)]
 fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, order: u32) -> bool {
-    const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
     const STRIP: i32 = (BLOCK_HEIGHT as i32) << fixed::SHIFT;
     let bounds = rect.pixels();
-    let blocks = bounds.left.max(0) as usize / BLOCK_WIDTH..(bounds.right.max(0) as usize).div_ceil(BLOCK_WIDTH);
-    if !occlusion.is_seen(frame.strips_of(bounds), blocks) {
+    if !occlusion.is_seen(frame.strips_of(bounds), Halves::touched(bounds)) {
         occlusion.set_gone(order);
         return true;
     }
-    let (first, end) = ((rect.left.max(0) + BLOCK - 1) / BLOCK, rect.right.max(0) / BLOCK);
+    let (first, end) = ((rect.left.max(0) + HALF - 1) / HALF, rect.right.max(0) / HALF);
     if first >= end {
         return false;
     }
@@ -141,7 +141,6 @@ fn claim_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, rect: FixedRect, ord
 /// Claims the blocks that a shape covers whole within `bounds` (device pixels).
 #[inline(always)]
 fn claim_round_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, shape: &RoundRect, bounds: IntRect, order: u32) {
-    const BLOCK: i32 = (BLOCK_WIDTH as i32) << fixed::SHIFT;
     const STRIP: i32 = BLOCK_HEIGHT as i32;
     let inside = shape.rect.intersect(bounds);
     let (band_top, band_bottom) = (frame.top << fixed::SHIFT, (frame.top + frame.rows as i32) << fixed::SHIFT);
@@ -156,7 +155,7 @@ fn claim_round_rect(frame: &Frame<'_>, occlusion: &mut Occlusion, shape: &RoundR
         }
         let (left, right) = shape.inner(arc, top, bottom);
         let (left, right) = (left.max(inside.left).max(0), right.min(inside.right).max(0));
-        let (start, end) = ((left + BLOCK - 1) / BLOCK, right / BLOCK);
+        let (start, end) = ((left + HALF - 1) / HALF, right / HALF);
         if start < end {
             occlusion.claim(order, strip as usize..strip as usize + 1, start as usize..end as usize);
         }
@@ -174,10 +173,5 @@ pub(super) fn find_visible(frame: &Frame<'_>, scratch: &mut BandScratch, bounds:
     }
     let strips = frame.strips_of(bounds);
     visible.resize(frame.strips, (0, 0));
-    let mut seen = false;
-    for (strip, visible) in visible.iter_mut().enumerate().take(strips.end).skip(strips.start) {
-        *visible = occlusion.visible(strip, bounds);
-        seen |= visible.0 < visible.1;
-    }
-    seen
+    occlusion.find_visible(strips.start, bounds, visible.get_mut(strips).unwrap_or(&mut []))
 }

@@ -103,7 +103,8 @@ pub(super) struct Place {
     pub(super) end: usize,
 }
 
-/// Keeps the coverage of an opaque shape in one strip where it can be seen, and claims the blocks that it covers whole.
+/// Keeps the coverage of an opaque shape in one strip where it can be seen, and claims the blocks, and halves of blocks, that it covers
+/// whole.
 pub(super) struct KeepSink<'a> {
     pub(super) kept: &'a mut Kept,
     pub(super) occlusion: &'a mut Occlusion,
@@ -117,6 +118,17 @@ impl KeepSink<'_> {
     fn keep(&mut self, start: usize, end: usize, coverage: PieceCoverage) {
         self.kept.pieces.push(Piece { strip: self.strip as u32, start: start as u32, end: end as u32, coverage });
     }
+
+    /// Claims the halves of a block that its coverage covers whole.
+    #[inline(never)]
+    fn claim_halves(&mut self, index: usize, mask: &MaskBlock) {
+        let all = mask.iter().take(self.rows).fold(u128::MAX, |all, row| all & u128::from_le_bytes(*row));
+        for (half, columns) in [(2 * index, all as u64), (2 * index + 1, (all >> 64) as u64)] {
+            if columns == u64::MAX {
+                self.occlusion.claim(self.order, self.strip..self.strip + 1, half..half + 1);
+            }
+        }
+    }
 }
 
 impl<S: Simd> BlockSink<S> for KeepSink<'_> {
@@ -128,10 +140,14 @@ impl<S: Simd> BlockSink<S> for KeepSink<'_> {
     #[inline(always)]
     fn block(&mut self, _simd: S, index: usize, coverage: BlockCoverage<'_>) {
         let BlockCoverage { mask, covered, full } = coverage;
-        if full.within(self.rows) == Rows::ALL.within(self.rows) {
-            self.occlusion.claim(self.order, self.strip..self.strip + 1, index..index + 1);
+        let rows = Rows::ALL.within(self.rows);
+        if full.within(self.rows) == rows {
+            self.occlusion.claim(self.order, self.strip..self.strip + 1, 2 * index..2 * index + 2);
             self.keep(index, index + 1, PieceCoverage::Rows([255; BLOCK_HEIGHT]));
             return;
+        }
+        if covered.within(self.rows) == rows {
+            self.claim_halves(index, mask);
         }
         let place = self.kept.masks.len() as u32;
         self.kept.masks.push(*mask);
@@ -144,7 +160,7 @@ impl<S: Simd> BlockSink<S> for KeepSink<'_> {
         while let Some((from, to)) = self.occlusion.visible_run(self.strip, start, end) {
             self.keep(from, to, PieceCoverage::Rows(*rows));
             if full {
-                self.occlusion.claim(self.order, self.strip..self.strip + 1, from..to);
+                self.occlusion.claim(self.order, self.strip..self.strip + 1, 2 * from..2 * to);
             }
             start = to;
         }
@@ -156,6 +172,44 @@ mod tests {
     use super::*;
     use crate::num::level::{SimdLevel, dispatch};
     use crate::surface::block::BLOCK_WIDTH;
+
+    #[test]
+    fn halves_of_blocks_that_are_covered_whole_hide_what_is_beneath() {
+        let whole = |columns: std::ops::Range<usize>, rows: usize| {
+            let mut mask = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
+            mask.iter_mut().take(rows).for_each(|row| row[columns.clone()].fill(255));
+            mask
+        };
+        let mut nearly = whole(0..16, 8);
+        (nearly[0][7], nearly[7][8]) = (254, 254);
+        let mut left = whole(0..8, 8);
+        left[5][12] = 9;
+        // The mask, how many rows the strip has, and whether each half is seen.
+        let cases = [
+            (left, 8, [false, true]),
+            (whole(8..16, 8), 8, [true, false]),
+            (whole(1..9, 8), 8, [true, true]),
+            (whole(0..9, 7), 8, [true, true]),
+            (whole(0..9, 7), 7, [false, true]),
+            (whole(7..16, 3), 2, [true, false]),
+            (nearly, 8, [true, true]),
+            (whole(0..16, 8), 8, [false, false]),
+        ];
+        dispatch!(SimdLevel::Scalar, simd => {
+            for (mask, rows, expected) in cases {
+                let (mut kept, mut occlusion) = (Kept::default(), Occlusion::default());
+                occlusion.reset(10, 2);
+                kept.begin(4);
+                KeepSink { kept: &mut kept, occlusion: &mut occlusion, order: 4, strip: 1, rows }
+                    .block(simd, 3, BlockCoverage::of(&mask));
+                let seen = [6, 7].map(|half| occlusion.is_seen(1..2, half..half + 1));
+                assert_eq!(seen, expected, "{rows} rows of {mask:?}");
+                assert!(occlusion.is_seen(1..2, 5..6) && occlusion.is_seen(1..2, 8..9) && occlusion.is_seen(0..1, 6..8));
+                occlusion.release(4);
+                assert!(!occlusion.is_some() && kept.holds(4));
+            }
+        });
+    }
 
     #[test]
     fn shapes_come_back_from_back_to_front_without_what_is_hidden() {

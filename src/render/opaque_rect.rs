@@ -4,14 +4,13 @@
 use fearless_simd::Simd;
 
 use super::band::Frame;
-use super::occlusion::Occlusion;
+use super::occlusion::{Halves, Occlusion, bits};
 use super::painter::fill_run;
 use super::surface::{StripRows, Surface, fill_line};
 use crate::blend::{OpaqueRow, over_opaque_row};
 use crate::geom::FixedRect;
 use crate::num::fixed;
-use crate::raster::sweep::{BlockSink, RectSide, sweep_rect};
-use crate::surface::block::{BLOCK_HEIGHT, BlockCoverage};
+use crate::raster::rect::{RectColumns, RectRows, RectSide};
 
 /// Draws a rectangle in one opaque colour over what is there: its coverage is reckoned strip by strip.
 #[inline(never)]
@@ -25,107 +24,102 @@ pub(super) fn paint_opaque_rect<S: Simd>(
 ) {
     simd.vectorize(
         #[inline(always)]
-        || {
-            let bounds = rect.pixels();
-            for strip in frame.strips_of(bounds) {
-                let (first, end) = occlusion.visible(strip, bounds);
-                if first < end {
-                    let mut painter = OpaquePainter { occlusion, rows: surface.strip(strip), strip, color };
-                    sweep_rect(simd, rect, frame.strip_top(strip) << fixed::SHIFT, end, &mut painter);
-                }
-            }
-        },
+        || paint_inner(simd, frame, rect, color, surface, occlusion),
     )
 }
 
-/// Draws the coverage of one strip.
-struct OpaquePainter<'a, 'b> {
-    occlusion: &'a Occlusion,
-    rows: StripRows<'b>,
-    strip: usize,
+#[inline(always)]
+fn paint_inner<S: Simd>(
+    simd: S,
+    frame: &Frame<'_>,
+    rect: FixedRect,
     color: [u8; 4],
-}
-
-impl<S: Simd> BlockSink<S> for OpaquePainter<'_, '_> {
-    #[inline(always)]
-    fn wants(&self, index: usize) -> bool {
-        !self.occlusion.is_hidden(self.strip, index)
-    }
-
-    #[inline(always)]
-    fn block(&mut self, simd: S, index: usize, coverage: BlockCoverage<'_>) {
-        let color = self.color;
-        self.rows.with_block(
-            index,
-            #[inline(always)]
-            |mut rows| {
-                rows.each(
-                    coverage.covered,
-                    #[inline(always)]
-                    |row, pixels| {
-                        if let Some(mask) = coverage.mask.get(row) {
-                            over_opaque_row(simd, pixels, color, mask);
-                        }
-                    },
-                );
-            },
-        );
-    }
-
-    #[inline(always)]
-    fn side(&mut self, simd: S, index: usize, side: &RectSide<'_>) {
-        paint_side(simd, &mut self.rows, index, side, self.color);
-    }
-
-    #[inline(always)]
-    fn run(&mut self, simd: S, mut start: usize, end: usize, rows: &[u8; BLOCK_HEIGHT]) {
-        while let Some((from, to)) = self.occlusion.visible_run(self.strip, start, end) {
-            // Nearly always all rows are covered whole.
-            if *rows == [u8::MAX; BLOCK_HEIGHT] {
-                let color = self.color;
-                self.rows.lines(from, to).each(
-                    #[inline(always)]
-                    |line| fill_line(simd, line, color),
-                );
-            } else {
-                fill_run(simd, &mut self.rows, from, to, rows, self.color, true);
+    surface: &mut Surface<'_>,
+    occlusion: &Occlusion,
+) {
+    let Some(columns) = RectColumns::of(rect, frame.blocks) else { return };
+    let sides = [Side::new(simd, columns.left, color), Side::new(simd, columns.right, color)];
+    let bounds = rect.pixels();
+    let (strips, halves) = (frame.strips_of(bounds), Halves::touched(bounds));
+    // Canvases of up to 1,024 pixels have one word a row.
+    for word in Halves::words(&halves) {
+        let (asked, whole) = (Halves::of(&halves, word), bits(columns.whole.clone(), word));
+        for strip in strips.clone() {
+            let mut seen = occlusion.seen(strip, word, asked);
+            if seen == 0 {
+                continue;
             }
-            start = to;
+            let rows = &RectRows::of(simd, rect, frame.strip_top(strip) << fixed::SHIFT);
+            let pixels = &mut surface.strip(strip);
+            for side in sides.iter().flatten() {
+                if side.side.block / 64 == word && seen >> (side.side.block % 64) & 1 == 1 {
+                    paint_side(simd, pixels, side, rows, color);
+                }
+            }
+            seen &= whole;
+            while seen != 0 {
+                let first = seen.trailing_zeros();
+                let count = (seen >> first).trailing_ones();
+                let (from, to) = (word * 64 + first as usize, word * 64 + (first + count) as usize);
+                if rows.are_whole {
+                    pixels.lines(from, to).each(
+                        #[inline(always)]
+                        |line| fill_line(simd, line, color),
+                    );
+                } else {
+                    fill_run(simd, pixels, from, to, &rows.coverage, color, true);
+                }
+                // What is added to the lowest of the ones carries past the last of its run.
+                seen &= seen.wrapping_add(1 << first);
+            }
         }
     }
 }
 
 /// A block in which a rectangle starts or ends.
+struct Side<S: Simd> {
+    side: RectSide,
+    /// The colour by the coverage that most rows share.
+    whole: OpaqueRow<S>,
+}
+
+impl<S: Simd> Side<S> {
+    #[inline(always)]
+    fn new(simd: S, side: Option<RectSide>, color: [u8; 4]) -> Option<Self> {
+        let side = side?;
+        Some(Self { side, whole: OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE)) })
+    }
+}
+
 #[inline(never)]
-fn paint_side<S: Simd>(simd: S, rows: &mut StripRows<'_>, index: usize, side: &RectSide<'_>, color: [u8; 4]) {
+fn paint_side<S: Simd>(simd: S, pixels: &mut StripRows<'_>, side: &Side<S>, rows: &RectRows, color: [u8; 4]) {
     simd.vectorize(
         #[inline(always)]
-        || paint_side_inner(simd, rows, index, side, color),
+        || paint_side_inner(simd, pixels, side, rows, color),
     );
 }
 
 #[inline(always)]
-fn paint_side_inner<S: Simd>(simd: S, rows: &mut StripRows<'_>, index: usize, side: &RectSide<'_>, color: [u8; 4]) {
-    // Most rows share their coverage.
-    let whole = OpaqueRow::new(simd, color, &side.row(simd, fixed::ONE));
-    rows.with_block(
-        index,
+fn paint_side_inner<S: Simd>(simd: S, pixels: &mut StripRows<'_>, side: &Side<S>, rows: &RectRows, color: [u8; 4]) {
+    let Side { side, whole } = side;
+    pixels.with_block(
+        side.block,
         #[inline(always)]
-        |mut rows| {
-            if side.whole_rows {
-                rows.each_one(
+        |mut block| {
+            if rows.are_whole {
+                block.each_one(
                     #[inline(always)]
                     |pixels| whole.over(simd, pixels),
                 );
                 return;
             }
-            rows.with(
-                side.heights,
+            block.with(
+                &rows.heights,
                 #[inline(always)]
-                |height, pixels| match height {
+                |height, pixels| match *height {
                     0 => {}
-                    256 => whole.over(simd, pixels),
-                    part => over_opaque_row(simd, pixels, color, &side.row(simd, *part)),
+                    fixed::ONE => whole.over(simd, pixels),
+                    part => over_opaque_row(simd, pixels, color, &side.row(simd, part)),
                 },
             );
         },

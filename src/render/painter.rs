@@ -17,7 +17,8 @@ use crate::geom::FixedRect;
 use crate::num::fixed;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
-use crate::raster::sweep::{BlockSink, sweep_rect};
+use crate::raster::rect::sweep_rect;
+use crate::raster::sweep::BlockSink;
 use crate::surface::block::{BLOCK_HEIGHT, BLOCK_WIDTH, BlockCoverage, MaskBlock};
 
 const EMPTY_MASK: MaskBlock = [[0; BLOCK_WIDTH]; BLOCK_HEIGHT];
