@@ -49,6 +49,7 @@ impl Color {
 
     /// The same colour with its alpha multiplied by `opacity`.
     #[must_use]
+    #[inline]
     pub fn with_opacity(self, opacity: f32) -> Self {
         Self { a: unit(self.a) * unit(opacity), ..self }
     }
@@ -59,6 +60,7 @@ impl Color {
     }
 
     /// The premultiplied components in 0 ..= 255: each is rounded once, after the multiplication.
+    #[inline]
     pub fn premultiply(self) -> [u8; 4] {
         let a = unit(self.a);
         [unit(self.r) * a, unit(self.g) * a, unit(self.b) * a, a].map(byte)
@@ -76,7 +78,8 @@ fn to_u8(v: f32) -> u8 {
 
 /// `v`, in 0 ..= 1, in 0 ..= 255.
 fn byte(v: f32) -> u8 {
-    (v * 255.0 + 0.5) as u8
+    // Of a sum with 2^20 the whole part lies above 32 bits of fraction: nothing to be checked, as a cast does.
+    ((f64::from(v * 255.0 + 0.5) + 1_048_576.0).to_bits() >> 32) as u8
 }
 
 /// Straight to premultiplied, rounded to nearest.
@@ -108,6 +111,20 @@ mod tests {
             assert_eq!(premultiply_u8([v, 0, 255, 255]), [v, 0, 255, 255]);
             assert_eq!(Color::from_rgba8(v, v, v, 255).premultiply(), [v, v, v, 255]);
             assert_eq!(Color::from_rgba8(v, v, v, v).to_rgba8(), [v; 4]);
+        }
+    }
+
+    #[test]
+    fn components_are_rounded_to_the_nearest_byte() {
+        // Around each boundary, and all over the range.
+        let near = (0..=255_u32).flat_map(|byte| {
+            let boundary = ((byte as f32 + 0.5) / 255.0).to_bits();
+            (boundary - 40..boundary + 40).map(f32::from_bits)
+        });
+        for v in near.chain((0..=1_000_000).map(|i| i as f32 / 1e6)).chain([0.0, f32::MIN_POSITIVE, 1.0]) {
+            if v <= 1.0 {
+                assert_eq!(byte(v), (v * 255.0 + 0.5).floor() as u8, "{v}");
+            }
         }
     }
 

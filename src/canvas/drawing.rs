@@ -3,7 +3,7 @@
 use super::Canvas;
 use crate::blend::BlendMode;
 use crate::color::Color;
-use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, Paint, Span, ToPaint};
+use crate::display_list::{ClipId, Command, Draw, Effect, EffectKind, Geometry, Paint, PaintRef, Span, ToPaint};
 use crate::filter::pixels;
 use crate::geom::{FixedRect, IntRect, Point, Rect, Transform};
 use crate::paint::{PreparedPaint, Shader};
@@ -183,19 +183,24 @@ impl Canvas<'_> {
         if bounds.is_empty() {
             return;
         }
-        let prepared = match &paint.shader {
-            Shader::Solid(color) => PreparedPaint::solid(*color, paint.opacity),
-            shader => PreparedPaint::new(shader, self.state.to_pixels(), paint.opacity),
+        let (reference, opaque) = match &paint.shader {
+            Shader::Solid(color) => {
+                let color = color.with_opacity(paint.opacity).premultiply();
+                (PaintRef::of_color(color), color[3] == u8::MAX)
+            }
+            shader => {
+                let prepared = PreparedPaint::new(shader, self.state.to_pixels(), paint.opacity);
+                if matches!(prepared, PreparedPaint::Nothing) && paint.blend_mode == BlendMode::SourceOver {
+                    return;
+                }
+                let (index, opaque) = (self.list.paints.len() as u32, prepared.is_opaque());
+                self.list.paints.push(prepared);
+                (PaintRef::of_index(index), opaque)
+            }
         };
-        if matches!(prepared, PreparedPaint::Nothing) && paint.blend_mode == BlendMode::SourceOver {
-            return;
-        }
-        let index = self.list.paints.len() as u32;
-        let opaque = prepared.is_opaque();
-        self.list.paints.push(prepared);
         self.list.commands.push(Command::Draw(Draw {
             geometry,
-            paint: index,
+            paint: reference,
             antialias: paint.antialias,
             blend_mode: paint.blend_mode,
             clip,

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use super::Canvas;
 use super::state::OpenLayerKind;
 use crate::blend::BlendMode;
-use crate::display_list::{ClipId, Command, Draw, Geometry, LayerStart};
+use crate::display_list::{ClipId, Command, Draw, Geometry, LayerStart, PaintRef};
 use crate::error::Result;
 use crate::geom::{IntRect, Transform};
 use crate::paint::PreparedPaint;
@@ -60,10 +60,10 @@ impl Canvas<'_> {
             self.draw_picture(paint, area, BlendMode::Source);
             return Ok(());
         }
-        // Each draw has a paint of its own, later ones after earlier ones: those of what was replaced are not needed any more, pictures
+        // Each draw that is not in one colour has a paint of its own, later ones after earlier ones: those of what was replaced are not needed any more, pictures
         // of earlier folds among them.
         let last_outer = self.list.commands.iter().rev().find_map(|command| match command {
-            Command::Draw(draw) => Some(draw.paint),
+            Command::Draw(draw) => draw.paint.index(),
             _ => None,
         });
         let index = last_outer.map_or(0, |last| last + 1);
@@ -80,7 +80,7 @@ impl Canvas<'_> {
             Command::Effect(_) => false,
             Command::Draw(draw) if area.contains(draw.bounds) => {
                 // Other paints keep their places.
-                if let Some(paint) = paints.get_mut(draw.paint as usize) {
+                if let Some(paint) = draw.paint.index().and_then(|index| paints.get_mut(index as usize)) {
                     *paint = PreparedPaint::Nothing;
                 }
                 false
@@ -91,7 +91,7 @@ impl Canvas<'_> {
 
     /// Records a picture of `area`.
     fn draw_picture(&mut self, picture: PreparedPaint, area: IntRect, blend_mode: BlendMode) {
-        let paint = self.list.paints.len() as u32;
+        let paint = PaintRef::of_index(self.list.paints.len() as u32);
         let opaque = picture.is_opaque();
         self.list.paints.push(picture);
         self.list.commands.push(Command::Draw(Draw {

@@ -1,5 +1,6 @@
 //! Commands and the arenas that hold their data.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::blend::BlendMode;
@@ -36,6 +37,40 @@ impl OutlineRef {
     #[inline(always)]
     fn shared(self) -> Option<usize> {
         (self.verbs == Self::SHARED).then_some(self.points.0 as usize)
+    }
+}
+
+/// How a draw's pixels look: in one colour, as most do, or by one of [`DisplayList::paints`]. No `enum`, for the reason that
+/// [`OutlineRef`] is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PaintRef {
+    value: [u8; 4],
+    is_listed: bool,
+}
+
+impl PaintRef {
+    /// The premultiplied pixel `color` everywhere, a transparent one included.
+    #[inline(always)]
+    pub(crate) fn of_color(color: [u8; 4]) -> Self {
+        Self { value: color, is_listed: false }
+    }
+
+    /// The paint of that place in the list.
+    #[inline(always)]
+    pub(crate) fn of_index(index: u32) -> Self {
+        Self { value: index.to_ne_bytes(), is_listed: true }
+    }
+
+    /// The colour, if it is one.
+    #[inline(always)]
+    pub(crate) fn color(self) -> Option<[u8; 4]> {
+        (!self.is_listed).then_some(self.value)
+    }
+
+    /// The place in the list, if it has one.
+    #[inline(always)]
+    pub(crate) fn index(self) -> Option<u32> {
+        self.is_listed.then_some(u32::from_ne_bytes(self.value))
     }
 }
 
@@ -97,8 +132,7 @@ impl ClipNode {
 #[derive(Clone, Debug)]
 pub(crate) struct Draw {
     pub(crate) geometry: Geometry,
-    /// Indexes [`DisplayList::paints`].
-    pub(crate) paint: u32,
+    pub(crate) paint: PaintRef,
     pub(crate) antialias: Antialias,
     pub(crate) blend_mode: BlendMode,
     pub(crate) clip: ClipId,
@@ -315,6 +349,15 @@ impl DisplayList {
     /// The transform of a geometry.
     pub(crate) fn transform(&self, index: u32) -> Transform {
         self.transforms.get(index as usize).copied().unwrap_or(Transform::IDENTITY)
+    }
+
+    /// How a draw's pixels look.
+    #[inline(always)]
+    pub(crate) fn paint(&self, paint: PaintRef) -> Option<Cow<'_, PreparedPaint>> {
+        match paint.color() {
+            Some(color) => Some(Cow::Owned(PreparedPaint::Solid(color))),
+            None => self.paints.get(paint.index()? as usize).map(Cow::Borrowed),
+        }
     }
 
     /// The clip with the given name; `None` for [`ClipId::NONE`].

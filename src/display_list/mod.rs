@@ -4,6 +4,6 @@ mod command;
 mod paint;
 
 pub(crate) use command::{
-    ClipId, ClipKind, ClipNode, Command, DisplayList, Draw, Effect, EffectKind, Geometry, LayerStart, Span,
+    ClipId, ClipKind, ClipNode, Command, DisplayList, Draw, Effect, EffectKind, Geometry, LayerStart, PaintRef, Span,
 };
 pub use paint::{ImagePaint, Paint, ToPaint};

@@ -7,7 +7,7 @@ use super::pattern::ImagePattern;
 use super::plane::Affine;
 use super::ramp::{Colors, last_color};
 use super::shader::{FilterQuality, GradientStop, Pattern, Shader, SpreadMode};
-use crate::color::{Color, unit};
+use crate::color::unit;
 use crate::geom::Transform;
 use crate::surface::Pixmap;
 
@@ -31,7 +31,7 @@ impl PreparedPaint {
         let opacity = unit(opacity);
         let to_device = |own: Transform| Affine::from(own).then(Affine::from(transform));
         match shader {
-            Shader::Solid(color) => Self::solid(*color, opacity),
+            Shader::Solid(color) => Self::Solid(color.with_opacity(opacity).premultiply()),
             Shader::LinearGradient(gradient) => {
                 let placed = place_linear(gradient, to_device(gradient.transform));
                 Self::from_gradient(placed, &gradient.stops, gradient.spread, opacity)
@@ -52,12 +52,6 @@ impl PreparedPaint {
                 None => Self::Nothing,
             },
         }
-    }
-
-    /// One colour, the same way. A part of each call that draws: mostly it is a colour that is drawn.
-    #[inline(always)]
-    pub(crate) fn solid(color: Color, opacity: f32) -> Self {
-        Self::Solid(color.with_opacity(opacity).premultiply())
     }
 
     /// A picture that was drawn for this place, transparent around it: at whole pixels, a copy.

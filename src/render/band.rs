@@ -22,7 +22,7 @@ use super::plan::Plan;
 use super::surface::Surface;
 use super::{Drawing, Piece};
 use crate::blend::BlendMode;
-use crate::display_list::{Command, DisplayList, Draw, Geometry, LayerStart};
+use crate::display_list::{Command, DisplayList, Draw, Geometry, LayerStart, PaintRef};
 use crate::geom::{FixedRect, IntRect};
 use crate::num::level::{SimdLevel, dispatch};
 use crate::paint::PreparedPaint;
@@ -184,7 +184,8 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
             let boundary = piece.chunk.boundary(band, *item);
             match command {
                 Command::Draw(draw) => {
-                    let Some(paint) = frame.list.paints.get(draw.paint as usize) else { continue };
+                    let Some(paint) = frame.list.paint(draw.paint) else { continue };
+                    let paint = &*paint;
                     if scratch.kept.holds(place) {
                         paint_kept(simd, frame, &mut scratch.kept, Look::new(draw, paint, None), target);
                     } else if let Some(Stretch { index, count }) = piece.chunk.stretch() {
@@ -221,7 +222,7 @@ fn render_with<S: Simd>(simd: S, frame: &Frame<'_>, target: &mut Surface<'_>, sc
                     let Some(picture) = frame.plan.picture(item.command) else { continue };
                     let draw = Draw {
                         geometry: Geometry::Bounds,
-                        paint: 0,
+                        paint: PaintRef::of_color([0; 4]),
                         antialias: Antialias::None,
                         blend_mode: effect.blend_mode,
                         clip: effect.clip,

@@ -10,7 +10,6 @@ use crate::blend::BlendMode;
 use crate::display_list::{ClipId, ClipKind, Command, DisplayList, Draw, Geometry};
 use crate::geom::{FixedRect, IntRect, Point, Rect};
 use crate::num::level::dispatch;
-use crate::paint::PreparedPaint;
 use crate::path::flatten::{PolygonSink, TOLERANCE, flatten_fill};
 use crate::path::polygons::Polygons;
 use crate::path::round_rect::{may_be_round_rect, round_rect};
@@ -119,11 +118,11 @@ impl Chunk {
             match command {
                 Command::Draw(draw) => {
                     let role = role(draw);
-                    match solid_rect(list, draw) {
+                    match solid_rect(draw) {
                         Some((rect, color)) => self.bins.list_rect(number, role, rect.intersect(frame), color),
                         None => {
                             let (antialias, bounds) = (draw.antialias, draw.bounds);
-                            let color = solid(list, draw);
+                            let color = solid(draw);
                             self.shape(simd, list, (number, role), &draw.geometry, antialias, bounds, color, frame);
                         }
                     }
@@ -248,23 +247,20 @@ fn role(draw: &Draw) -> Role {
 
 /// What a draw covers and in which colour, if it is a rectangle, in one colour, over what is there.
 #[inline(always)]
-fn solid_rect(list: &DisplayList, draw: &Draw) -> Option<(FixedRect, [u8; 4])> {
+fn solid_rect(draw: &Draw) -> Option<(FixedRect, [u8; 4])> {
     let rect = match draw.geometry {
         Geometry::Rect(rect) if is_exact(draw.antialias) => rect.intersect(draw.bounds),
         Geometry::Bounds => FixedRect::of_pixels(draw.bounds),
         _ => return None,
     };
-    solid(list, draw).map(|color| (rect, color))
+    solid(draw).map(|color| (rect, color))
 }
 
 /// In which colour a draw is, if it is one, over what is there, within its bounds.
 #[inline(always)]
-fn solid(list: &DisplayList, draw: &Draw) -> Option<[u8; 4]> {
+fn solid(draw: &Draw) -> Option<[u8; 4]> {
     let over = draw.blend_mode == BlendMode::SourceOver || draw.blend_mode == BlendMode::Source && draw.opaque;
-    match list.paints.get(draw.paint as usize) {
-        Some(PreparedPaint::Solid(color)) if draw.clip == ClipId::NONE && over => Some(*color),
-        _ => None,
-    }
+    draw.paint.color().filter(|_| draw.clip == ClipId::NONE && over)
 }
 
 /// Whether coverage is area, not a count of samples.
@@ -292,6 +288,7 @@ fn rectangle<K: PolygonSink>(rect: Rect, sink: &mut K) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::display_list::PaintRef;
     use crate::geom::Transform;
     use crate::path::{Path, Stroke};
 
@@ -300,14 +297,13 @@ mod tests {
         let mut list = DisplayList::default();
         let mut path = Path::new();
         path.move_to((1.0, 2.0)).line_to((30.0, 40.0));
-        list.paints.push(PreparedPaint::Solid([9, 9, 9, 255]));
         for index in 0..commands {
             let stretches = long.iter().find(|(command, _)| *command == index).map_or(1, |(_, stretches)| *stretches);
             let (outline, transform) = (list.add_path(&path), list.add_transform(Transform::IDENTITY));
             let style = list.add_stroke(&Stroke::new(1.0), stretches);
             list.commands.push(Command::Draw(Draw {
                 geometry: Geometry::Stroke { outline, transform, style },
-                paint: 0,
+                paint: PaintRef::of_color([9, 9, 9, 255]),
                 antialias: if stretches == 7 { Antialias::Exact } else { Antialias::Analytic },
                 blend_mode: BlendMode::SourceOver,
                 clip: ClipId::NONE,

@@ -112,8 +112,7 @@ impl Edges {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::display_list::{ClipId, Command, Draw, Geometry};
-    use crate::paint::PreparedPaint;
+    use crate::display_list::{ClipId, Command, Draw, Geometry, PaintRef};
     use crate::style::Antialias;
 
     /// One rectangle over rows 3 to 40.
@@ -122,10 +121,9 @@ mod tests {
     fn section() -> Section {
         let mut list = DisplayList::default();
         let bounds = IntRect::from_ltrb(0, 3, 10, 40);
-        list.paints.push(PreparedPaint::Solid([9, 9, 9, 255]));
         list.commands.push(Command::Draw(Draw {
             geometry: Geometry::Bounds,
-            paint: 0,
+            paint: PaintRef::of_color([9, 9, 9, 255]),
             antialias: Antialias::Analytic,
             blend_mode: crate::BlendMode::SourceOver,
             clip: ClipId::NONE,
