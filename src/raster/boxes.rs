@@ -95,27 +95,22 @@ impl Boxes {
         }
         let Some(edges) = self.levels.first_mut() else { return true };
         let (start, mut have_length) = (edges.len(), true);
-        let mut index = first;
-        let mut add = |nine: &[FixedPoint; 9], count: usize| {
-            let (node, all) = Node::of_edges(simd, nine, count, index, outline);
-            edges.push(node);
-            have_length &= all;
-            index += 8;
-        };
-        for nine in corners.windows(9).step_by(8) {
-            if let Some(nine) = nine.first_chunk::<9>() {
-                add(nine, 8);
-            }
-        }
-        let rest = corners.get((corners.len().max(1) - 1) / 8 * 8..).unwrap_or(&[]);
-        if let [first, others @ ..] = rest
-            && let Some(count) = rest.len().checked_sub(1).filter(|count| *count > 0)
-        {
-            let mut nine = [*first; 9];
-            for (corner, other) in nine.iter_mut().skip(1).zip(others) {
-                *corner = *other;
-            }
-            add(&nine, count);
+        // Made where they stay: a node that is moved is written in parts and read as a whole, and then has to be waited for.
+        edges.resize(start + (corners.len().max(1) - 1).div_ceil(8), Node::EMPTY);
+        let nodes = edges.get_mut(start..).unwrap_or(&mut []);
+        for (node, place) in nodes.iter_mut().zip((0..).step_by(8)) {
+            let Some(rest @ [corner, others @ ..]) = corners.get(place..) else { break };
+            let mut padded = [*corner; 9];
+            let (nine, count) = match rest.first_chunk() {
+                Some(nine) => (nine, 8),
+                None => {
+                    for (corner, other) in padded.iter_mut().skip(1).zip(others) {
+                        *corner = *other;
+                    }
+                    (&padded, others.len())
+                }
+            };
+            have_length &= node.set_edges(simd, nine, count, first + place as u32, outline);
         }
         if !have_length {
             edges.truncate(start);
@@ -282,18 +277,22 @@ impl Node {
         ordered: 0,
     };
 
-    /// The first `count` of the edges between nine corners, and whether all of them have a length. The first corner is number `first`.
+    /// Makes it that of the first `count` of the edges between nine corners, and says whether all of them have a length. The first corner is
+    /// number `first`.
     #[inline(always)]
-    fn of_edges<S: Simd>(
+    fn set_edges<S: Simd>(
+        &mut self,
         simd: S,
         corners: &[FixedPoint; 9],
         count: usize,
         first: u32,
         outline: [u32; 2],
-    ) -> (Self, bool) {
-        let [start @ .., _] = corners;
-        let [_, end @ ..] = corners;
-        let ((from_x, from_y), (to_x, to_y)) = (coordinates(simd, start), coordinates(simd, end));
+    ) -> bool {
+        let [start @ .., last] = corners;
+        let (from_x, from_y) = coordinates(simd, start);
+        // Not loaded as well, from between what was just written.
+        let (to_x, to_y) =
+            (from_x.slide::<1>(i32x8::splat(simd, last.x)), from_y.slide::<1>(i32x8::splat(simd, last.y)));
         let others = !0_u32 << count & 0xff;
         let have_length = (from_x.simd_eq(to_x) & from_y.simd_eq(to_y)).to_bitmask() as u32 & !others == 0;
         // Each goes some way along the line from the first corner to the last. The margin is more than what rounding may add.
@@ -313,9 +312,13 @@ impl Node {
         // The greatest is the least of what all bits are turned around of.
         let [least_x, least_y, greatest_x, greatest_y] = least_of_each([left, top, !right, !bottom]);
         let around = Bounds { left: least_x, top: least_y, right: !greatest_x, bottom: !greatest_y };
-        let (left, top, right, bottom) = (left.to_array(), top.to_array(), right.to_array(), bottom.to_array());
-        let ordered = if is_ordered { 0xff } else { 0 };
-        (Self { left, top, right, bottom, around, first, outline, ways: 0, is_ordered, ordered }, have_length)
+        left.store_array(&mut self.left);
+        top.store_array(&mut self.top);
+        right.store_array(&mut self.right);
+        bottom.store_array(&mut self.bottom);
+        (self.around, self.first, self.outline) = (around, first, outline);
+        (self.is_ordered, self.ordered) = (is_ordered, if is_ordered { 0xff } else { 0 });
+        have_length
     }
 
     /// At most eight nodes, of which the first is number `first`, and whether they are those of edges.
