@@ -62,6 +62,9 @@ pub(super) struct Boxes {
     pairs: Vec<Pair>,
 }
 
+/// So many nodes around edges are compared with each other one by one: a level above them would take as long to build.
+pub(super) const FEW: usize = 8;
+
 /// An edge: the numbers of its corners.
 pub(super) type Numbers = [u32; 2];
 
@@ -137,13 +140,13 @@ impl Boxes {
         })
     }
 
-    /// Builds the levels above the edges, one at least.
+    /// Builds the levels above the edges, where there are more than [`FEW`] nodes around those.
     #[inline(always)]
     pub(super) fn build(&mut self) {
         self.height = 1;
         while let Some((below, above)) = self.levels.split_at_mut_checked(self.height)
             && let Some(below) = below.last()
-            && (below.len() > 1 || self.height == 1)
+            && below.len() > if self.height == 1 { FEW } else { 1 }
         {
             if above.is_empty() {
                 self.levels.push(Vec::new());
@@ -169,6 +172,10 @@ impl Boxes {
     ) -> bool {
         let Self { levels, height, pairs } = self;
         let Some(top) = height.checked_sub(1) else { return true };
+        if top == 0 {
+            let used = levels.first().map_or(Some(0), |nodes| for_pairs_of_few(simd, nodes, &mut meet));
+            return take_looks(looks, used);
+        }
         pairs.clear();
         pairs.push(Pair { level: top as u32, one: 0, other: 0 });
         while let Some(Pair { level, one, other }) = pairs.pop() {
@@ -200,9 +207,8 @@ impl Boxes {
                     }
                 }
             }
-            match looks.checked_sub(used) {
-                Some(rest) => *looks = rest,
-                None => return false,
+            if !take_looks(looks, Some(used)) {
+                return false;
             }
         }
         true
@@ -237,6 +243,10 @@ impl Boxes {
         looks: &mut usize,
         mut found: impl FnMut(Numbers),
     ) -> bool {
+        if self.height == 1 {
+            let used = self.for_left_of_in(simd, 0..self.len(), point, found);
+            return take_looks(looks, Some(used));
+        }
         let Self { levels, height, pairs } = self;
         let Some(top) = height.checked_sub(1) else { return true };
         let beside = Bounds::left_of(point);
@@ -245,9 +255,8 @@ impl Boxes {
         while let Some(Pair { level, one, .. }) = pairs.pop() {
             let Some(node) = levels.get(level as usize).and_then(|nodes| nodes.get(one as usize)) else { break };
             let mut near = node.near(simd, beside);
-            match looks.checked_sub(1) {
-                Some(rest) => *looks = rest,
-                None => return false,
+            if !take_looks(looks, Some(1)) {
+                return false;
             }
             while near != 0 {
                 let index = node.first + near.trailing_zeros();
@@ -261,6 +270,38 @@ impl Boxes {
         }
         true
     }
+}
+
+/// Takes what was used from the looks that are left; false where nothing was to be used any more, or they do not suffice.
+#[inline(always)]
+fn take_looks(looks: &mut usize, used: Option<usize>) -> bool {
+    match used.and_then(|used| looks.checked_sub(used)) {
+        Some(rest) => {
+            *looks = rest;
+            true
+        }
+        None => false,
+    }
+}
+
+/// [`Boxes::for_pairs`] of nodes around edges, compared with each other one by one. Says how many looks that took; `None` where `meet`
+/// returned false.
+#[inline(always)]
+fn for_pairs_of_few<S: Simd>(
+    simd: S,
+    nodes: &[Node],
+    meet: &mut impl FnMut(Numbers, Numbers) -> bool,
+) -> Option<usize> {
+    let mut looks = 1;
+    for (index, own) in nodes.iter().enumerate() {
+        for other in nodes.get(index..).unwrap_or(&[]) {
+            let is_same = own.first == other.first;
+            if if is_same { !own.is_ordered } else { own.around.meets(other.around) } {
+                looks += own.for_pairs(simd, other, meet)?;
+            }
+        }
+    }
+    Some(looks)
 }
 
 impl Node {
@@ -461,6 +502,15 @@ impl Bounds {
     #[inline(always)]
     pub(super) fn is_left_of(self, point: FixedPoint) -> bool {
         self.left <= point.x && self.top <= point.y && point.y <= self.bottom
+    }
+
+    /// Whether it has a point in common with another, be it of a side.
+    #[inline(always)]
+    fn meets(self, other: Self) -> bool {
+        (self.left <= other.right)
+            & (other.left <= self.right)
+            & (self.top <= other.bottom)
+            & (other.top <= self.bottom)
     }
 
     #[inline(always)]

@@ -15,7 +15,7 @@ use core::cmp::Ordering;
 
 use fearless_simd::Simd;
 
-use super::boxes::{Bounds, Boxes, Numbers};
+use super::boxes::{Bounds, Boxes, FEW, Numbers};
 use super::edge::{FixedPoint, append_closed};
 use super::orientation::{Corner, Ends, area, is_right_of};
 use crate::num::lanes::round_f64;
@@ -33,9 +33,6 @@ const MOST_CROSSINGS: usize = 1 << 17;
 
 /// Outlines of more corners are not looked at: what crosses itself so often does so everywhere, and memory matters.
 pub(super) const MOST_CORNERS: usize = 1 << 20;
-
-/// So many outlines are compared with each other one by one.
-const FEW: usize = 8;
 
 /// No crossing.
 const NONE: u32 = u32::MAX;
