@@ -63,7 +63,7 @@ pub(super) struct Boxes {
 }
 
 /// So many nodes around edges are compared with each other one by one: a level above them would take as long to build.
-pub(super) const FEW: usize = 8;
+pub(super) const FEW: usize = 20;
 
 /// An edge: the numbers of its corners.
 pub(super) type Numbers = [u32; 2];
