@@ -475,11 +475,13 @@ impl Node {
     fn near<S: Simd>(&self, simd: S, other: Bounds) -> u32 {
         let splat = |v: i32| i32x8::splat(simd, v);
         let load = |lanes: &[i32; 8]| i32x8::load_array_ref(simd, lanes);
-        let apart = splat(other.left).simd_gt(load(&self.right))
-            | load(&self.left).simd_gt(splat(other.right))
-            | splat(other.top).simd_gt(load(&self.bottom))
-            | load(&self.top).simd_gt(splat(other.bottom));
-        !(apart.to_bitmask() as u32) & 0xff
+        // Where one side's sign says that they are apart. Sides are at most 2^28 from 0, but those of empty boxes, of which at least one difference
+        // is below 0 even where another wraps around.
+        let room = (load(&self.right) - splat(other.left))
+            | (splat(other.right) - load(&self.left))
+            | (load(&self.bottom) - splat(other.top))
+            | (splat(other.bottom) - load(&self.top));
+        room.simd_ge(0).to_bitmask() as u32
     }
 }
 
@@ -492,10 +494,10 @@ fn is_one_way(ways: u8) -> bool {
 impl Bounds {
     const EMPTY: Self = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
 
-    /// A row from a point to the left, without end.
+    /// A row from a point to the left, further than any box.
     #[inline(always)]
     fn left_of(point: FixedPoint) -> Self {
-        Self { left: i32::MIN, top: point.y, right: point.x, bottom: point.y }
+        Self { left: -(1 << 30), top: point.y, right: point.x, bottom: point.y }
     }
 
     /// Whether it lies beside a point, to its left or around it.
