@@ -1,7 +1,7 @@
 //! A tree of boxes around edges, by which those are found that may meet.
 //!
-//! Edges that follow each other lie near each other: eight of them are a *node*, eight nodes one of the level above. A box is
-//! compared with eight at once.
+//! Edges that follow each other lie near each other: eight of them are a *node*, eight nodes one of the level above, if there are more
+//! than a few. A box is compared with eight at once.
 
 use core::ops::Range;
 
