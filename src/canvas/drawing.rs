@@ -188,15 +188,16 @@ impl Canvas<'_> {
                 let color = color.with_opacity(paint.opacity).premultiply();
                 (PaintRef::of_color(color), color[3] == u8::MAX)
             }
-            shader => {
-                let prepared = PreparedPaint::new(shader, self.state.to_pixels(), paint.opacity);
-                if matches!(prepared, PreparedPaint::Nothing) && paint.blend_mode == BlendMode::SourceOver {
-                    return;
+            shader => match PreparedPaint::new(shader, self.state.to_pixels(), paint.opacity) {
+                PreparedPaint::Nothing if paint.blend_mode == BlendMode::SourceOver => return,
+                // Such as a gradient between equal colours.
+                PreparedPaint::Solid(color) => (PaintRef::of_color(color), color[3] == u8::MAX),
+                prepared => {
+                    let (index, opaque) = (self.list.paints.len() as u32, prepared.is_opaque());
+                    self.list.paints.push(prepared);
+                    (PaintRef::of_index(index), opaque)
                 }
-                let (index, opaque) = (self.list.paints.len() as u32, prepared.is_opaque());
-                self.list.paints.push(prepared);
-                (PaintRef::of_index(index), opaque)
-            }
+            },
         };
         self.list.commands.push(Command::Draw(Draw {
             geometry,

@@ -60,8 +60,8 @@ impl Canvas<'_> {
             self.draw_picture(paint, area, BlendMode::Source);
             return Ok(());
         }
-        // Each draw that is not in one colour has a paint of its own, later ones after earlier ones: those of what was replaced are not needed any more, pictures
-        // of earlier folds among them.
+        // Each draw that is not in one colour has a paint of its own, later ones after earlier ones: those of what was replaced are
+        // not needed any more, pictures of earlier folds among them.
         let last_outer = self.list.commands.iter().rev().find_map(|command| match command {
             Command::Draw(draw) => draw.paint.index(),
             _ => None,

@@ -272,7 +272,7 @@ impl Boxes {
     }
 }
 
-/// Takes what was used from the looks that are left; false where nothing was to be used any more, or they do not suffice.
+/// Takes what was used from the looks that are left; false where they do not suffice, or where there is no more to be used for.
 #[inline(always)]
 fn take_looks(looks: &mut usize, used: Option<usize>) -> bool {
     match used.and_then(|used| looks.checked_sub(used)) {

@@ -219,6 +219,7 @@ impl Resolver {
                     outside += winding_right_of(corners, edge, leftmost);
                 }
             };
+            // As few outlines as nodes: each is asked by itself, since most lie elsewhere.
             if outlines.len() <= FEW {
                 for (_, other) in outlines.iter().enumerate().filter(|(other, _)| *other != index) {
                     if other.around.is_left_of(leftmost.point) {

@@ -41,11 +41,11 @@ pub(crate) fn sweep_rect<S: Simd, K: BlockSink<S>>(simd: S, rect: FixedRect, top
 /// How a rectangle lies across blocks.
 #[derive(Clone, Debug)]
 pub(crate) struct RectColumns {
-    /// The block in which it starts, unless that is at the block's left side.
+    /// The block in which it starts, unless it covers that from side to side.
     pub(crate) left: Option<RectSide>,
     /// The blocks that it covers from side to side.
     pub(crate) whole: Range<usize>,
-    /// The block in which it ends, unless it starts there as well.
+    /// The block in which it ends, unless it covers that, or starts there as well.
     pub(crate) right: Option<RectSide>,
 }
 
@@ -68,7 +68,7 @@ impl RectColumns {
         Some(Self {
             left: starts.then(|| side(first)),
             whole: first + usize::from(starts)..last + usize::from(!ends),
-            right: (ends && (last > first || !starts)).then(|| side(last)),
+            right: (ends && last > first).then(|| side(last)),
         })
     }
 }

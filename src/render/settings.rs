@@ -7,7 +7,7 @@ use crate::pool;
 /// The heights among which a picture's bands have theirs: what bands share is done once for each, but there should be enough of
 /// them for the threads, and memory for the pixels of one in the core's own cache.
 const BAND_HEIGHTS: (u32, u32) = (32, 128);
-/// Pixels of a band that is higher than it must be, 512 KiB: half of the second-level cache of most machines.
+/// Pixels of a band that is higher than it must be, 512 KiB: half of a second-level cache of 1 MiB.
 const BAND_PIXELS: u32 = 1 << 17;
 /// Bands for each thread, where there are several: the last ones to be drawn keep few of them waiting.
 const BANDS_PER_THREAD: u32 = 6;
