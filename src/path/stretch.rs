@@ -165,7 +165,7 @@ mod tests {
             let (stretch, scratch) = (Stretch { index, count }, &mut StrokeScratch::default());
             let mut polygons = Polygons::default();
             stroke_stretch(path.verbs(), path.points(), style, transform, 0.05, stretch, scratch, &mut polygons);
-            drawn += usize::from(!polygons.points().is_empty());
+            drawn += usize::from(polygons.count() > 0);
             add_edges(&polygons, &mut edges);
         }
         (edges, drawn)

@@ -6,7 +6,7 @@ use fearless_simd::{f32x16, i32x16};
 use super::bar::Bar;
 use super::cut::Cutter;
 use super::edge::{Edge, FixedPoint, append_closed};
-use super::exact::{MOST_CORNERS, Resolver};
+use super::exact::{MOST_CORNERS, Resolved, Resolver};
 use super::round_rect::RoundRect;
 use crate::geom::{FixedRect, IntRect, Point};
 use crate::num::fixed;
@@ -96,6 +96,8 @@ pub(crate) struct EdgeBins {
     /// log2 of a band's height in 1/256 pixel.
     band_shift: u32,
     resolver: Resolver,
+    /// Those of outlines that are still to be cut.
+    uncut: Vec<FixedPoint>,
 }
 
 /// What bounds a draw in one band.
@@ -278,14 +280,10 @@ impl EdgeBins {
         open_right: bool,
         crossings: Option<FillRule>,
     ) {
-        let extent = extent(simd, polygons.points());
-        // Before they are cut, so that it does not depend on where.
-        let are_resolved = crossings.is_some_and(|rule| {
-            extent.is_some_and(|extent| extent.iter().all(|v| v.abs() < FARTHEST))
-                && polygons.points().len() <= MOST_CORNERS
-                && self.resolver.resolve(simd, polygons, rule)
+        let extent = extent_of_eights(simd, polygons.eights());
+        let crossings = crossings.filter(|_| {
+            extent.is_some_and(|extent| extent.iter().all(|v| v.abs() < FARTHEST)) && polygons.count() <= MOST_CORNERS
         });
-        let outlines = if are_resolved { Outlines::Resolved } else { Outlines::Polygons(polygons) };
         match extent {
             Some([left, top, right, bottom])
                 if left >= clip.left as f32
@@ -293,46 +291,65 @@ impl EdgeBins {
                     && right <= clip.right as f32
                     && bottom <= clip.bottom as f32 =>
             {
-                self.add_inside(simd, (command, role), outlines, fixed::from_f32(top), fixed::from_f32(bottom));
+                let (top, bottom) = (fixed::from_f32(top), fixed::from_f32(bottom));
+                self.add_inside(simd, (command, role), polygons, crossings, top, bottom);
             }
-            _ => self.add_cut((command, role), outlines, clip, open_right),
+            _ => {
+                // Before they are cut, so that it does not depend on where.
+                self.uncut.clear();
+                let resolved = match crossings {
+                    Some(rule) => self.resolver.resolve(simd, polygons, rule, &mut self.uncut),
+                    None => Resolved::Unknown,
+                };
+                self.add_cut((command, role), polygons, resolved, clip, open_right);
+            }
         }
     }
 
-    /// Lists outlines that lie between `top` and `bottom` (fixed point) and need no clipping.
+    /// Lists polygons that lie between `top` and `bottom` (fixed point) and need no clipping.
     #[inline(always)]
     fn add_inside<S: Simd>(
         &mut self,
         simd: S,
         (command, role): (u32, Role),
-        outlines: Outlines<'_>,
+        polygons: &Polygons,
+        crossings: Option<FillRule>,
         top: i32,
         bottom: i32,
     ) {
         let Self { points, bands, band_shift, resolver, .. } = self;
-        let count = match outlines {
-            Outlines::Polygons(polygons) => 2 * polygons.points().len(),
-            Outlines::Resolved => resolver.len(),
-        };
-        if top == bottom || u32::try_from(points.len() + count).is_err() {
+        if top == bottom || u32::try_from(points.len() + 2 * polygons.count()).is_err() {
             return;
         }
         let first = points.len();
+        let resolved = match crossings {
+            Some(rule) => resolver.resolve(simd, polygons, rule, points),
+            None => Resolved::Unknown,
+        };
+        if resolved == Resolved::Pieces && u32::try_from(first + resolver.len()).is_err() {
+            return;
+        }
         let (first_band, last_band) = (top >> *band_shift, (bottom - 1) >> *band_shift);
         let Some(bands) = bands.get_mut(first_band as usize..=last_band as usize) else { return };
         for band in bands.iter_mut() {
             band.items.push(BandItem::open(command, role, band.edges.len()));
         }
         let first_top = first_band << *band_shift;
-        match outlines {
-            Outlines::Polygons(polygons) => {
-                for polygon in polygons.iter() {
+        match resolved {
+            Resolved::Unknown => {
+                for (eights, count) in polygons.iter_eights() {
                     let start = points.len();
-                    append_closed(simd, polygon, points);
+                    append_closed(simd, eights, count, points);
                     list_from(simd, bands, points, start, first_top, *band_shift);
                 }
             }
-            Outlines::Resolved => {
+            Resolved::Outlines => {
+                for outline in resolver.outlines() {
+                    let points = points.get(..first + outline.end).unwrap_or(&[]);
+                    list_from(simd, bands, points, first + outline.start, first_top, *band_shift);
+                }
+            }
+            Resolved::Pieces => {
                 for piece in resolver.pieces() {
                     let start = points.len();
                     points.extend_from_slice(piece);
@@ -351,8 +368,15 @@ impl EdgeBins {
 
     /// Lists what may leave the clip.
     #[inline(never)]
-    fn add_cut(&mut self, (command, role): (u32, Role), outlines: Outlines<'_>, clip: IntRect, open_right: bool) {
-        let Self { points, bands, band_shift, resolver, .. } = self;
+    fn add_cut(
+        &mut self,
+        (command, role): (u32, Role),
+        polygons: &Polygons,
+        resolved: Resolved,
+        clip: IntRect,
+        open_right: bool,
+    ) {
+        let Self { points, bands, band_shift, resolver, uncut, .. } = self;
         let Some(bands) = touched(bands, clip.top << fixed::SHIFT, clip.bottom << fixed::SHIFT, *band_shift) else {
             return;
         };
@@ -381,15 +405,17 @@ impl EdgeBins {
                 }
             },
         );
-        match outlines {
-            Outlines::Polygons(polygons) => polygons.iter().for_each(|polygon| cutter.polygon(polygon)),
-            Outlines::Resolved => {
-                for pair in resolver.pieces().flat_map(|piece| piece.windows(2)) {
-                    if let [from, to] = pair {
-                        cutter.edge((from.x, from.y), (to.x, to.y));
-                    }
+        let polyline = |points: &[FixedPoint]| {
+            for pair in points.windows(2) {
+                if let [from, to] = pair {
+                    cutter.edge((from.x, from.y), (to.x, to.y));
                 }
             }
+        };
+        match resolved {
+            Resolved::Unknown => polygons.iter().for_each(|polygon| cutter.polygon(polygon)),
+            Resolved::Outlines => resolver.outlines().filter_map(|outline| uncut.get(outline)).for_each(polyline),
+            Resolved::Pieces => resolver.pieces().for_each(polyline),
         }
         for band in bands {
             close_item(band);
@@ -399,14 +425,6 @@ impl EdgeBins {
     fn bands_of(&mut self, top: i32, bottom: i32) -> &mut [BandList] {
         touched(&mut self.bands, top, bottom, self.band_shift).unwrap_or(&mut [])
     }
-}
-
-/// What bounds a shape.
-#[derive(Clone, Copy)]
-enum Outlines<'a> {
-    Polygons(&'a Polygons),
-    /// The pieces in the resolver.
-    Resolved,
 }
 
 /// The bands between `top` and `bottom` (fixed point).
@@ -509,14 +527,27 @@ fn list_by_band<S: Simd>(
 #[inline(always)]
 pub(crate) fn extent<S: Simd>(simd: S, points: &[Point]) -> Option<[f32; 4]> {
     let first = *points.first()?;
-    let start = f32x16::load_array(simd, bytemuck::cast([first; 8]));
-    let (mut low, mut high, mut finite) = (start, start, start * 0.0);
-    let (blocks, rest) = points.as_chunks::<8>();
+    let (eights, rest) = points.as_chunks::<8>();
     let mut last = [first; 8];
     for (last, p) in last.iter_mut().zip(rest) {
         *last = *p;
     }
-    for block in blocks.iter().chain(std::iter::once(&last)) {
+    extent_of(simd, first, eights.iter().chain(std::iter::once(&last)))
+}
+
+/// As [`extent`], of points in eights.
+#[inline(always)]
+fn extent_of_eights<S: Simd>(simd: S, eights: &[[Point; 8]]) -> Option<[f32; 4]> {
+    let [first, ..] = eights.first()?;
+    extent_of(simd, *first, eights.iter())
+}
+
+/// As [`extent`], of points one of which is `first`.
+#[inline(always)]
+fn extent_of<'a, S: Simd>(simd: S, first: Point, eights: impl Iterator<Item = &'a [Point; 8]>) -> Option<[f32; 4]> {
+    let start = f32x16::load_array(simd, bytemuck::cast([first; 8]));
+    let (mut low, mut high, mut finite) = (start, start, start * 0.0);
+    for block in eights {
         let v = f32x16::load_array(simd, bytemuck::cast(*block));
         low = min_f32(v, low);
         high = max_f32(v, high);
@@ -542,7 +573,6 @@ mod tests {
     use super::*;
     use crate::num::level::{SimdLevel, dispatch};
     use crate::path::flatten::PolygonSink;
-    use crate::raster::edge::append_fixed;
 
     fn bins_of(points: &[(f32, f32)], clip: IntRect, open_right: bool, bands: usize, height_shift: u32) -> EdgeBins {
         let mut polygons = Polygons::default();
@@ -653,14 +683,23 @@ mod tests {
         for level in SimdLevel::available() {
             for count in 1..points.len() {
                 let points = &points[..count];
+                let mut polygons = Polygons::default();
+                polygons.begin(points[0]);
+                points[1..].iter().for_each(|p| polygons.line(*p));
+                polygons.end();
+                let (eights, own) = polygons.iter_eights().next().unwrap();
                 let mut out = vec![FixedPoint { x: 7, y: 7 }];
-                dispatch!(level, simd => append_fixed(simd, points, &mut out));
+                dispatch!(level, simd => append_closed(simd, eights, own, &mut out));
                 let expected: Vec<_> =
                     points.iter().map(|p| FixedPoint { x: fixed::from_f32(p.x), y: fixed::from_f32(p.y) }).collect();
-                assert_eq!(out[1..], expected, "{level:?}");
+                assert_eq!((&out[1..=count], &out[count + 1..]), (&expected[..], &expected[..1]), "{level:?}");
                 let last = points[count - 1];
-                let found = dispatch!(level, simd => extent(simd, points));
-                assert_eq!(found, Some([points[0].x, last.y, last.x, points[0].y]), "{level:?}");
+                for found in [
+                    dispatch!(level, simd => extent(simd, points)),
+                    dispatch!(level, simd => extent_of_eights(simd, polygons.eights())),
+                ] {
+                    assert_eq!(found, Some([points[0].x, last.y, last.x, points[0].y]), "{level:?}");
+                }
             }
             let bad = [Point::ZERO, Point::new(f32::NAN, 1.0), Point::ZERO];
             assert_eq!(dispatch!(level, simd => extent(simd, &bad)), None);

@@ -8,7 +8,8 @@ use core::ops::Range;
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, i32x8};
 
-use super::edge::FixedPoint;
+use super::edge::{FixedPoint, coordinates, for_eights};
+use super::star::{Eight, Turn};
 use crate::num::lanes::{least_of_each, max_i32, min_i32};
 
 /// A box with its sides.
@@ -35,8 +36,10 @@ struct Node {
     /// Above the lowest level: the ways that all edges go, those along the other axis counted among them. Known for sure only where there is one
     /// across and one down.
     ways: u8,
-    /// Whether all go one way, and so meet only where they follow each other.
+    /// Whether all go one way or around a point, and so meet only where they follow each other.
     is_ordered: bool,
+    /// Whether the whole outline goes around a point once, so that none of its edges meet but where they follow each other.
+    is_star: bool,
     /// Of nodes, those of which this holds, as bits.
     ordered: u8,
 }
@@ -54,10 +57,15 @@ struct Pair {
     other: u32,
 }
 
-/// The tree, level by level from the edges upwards.
+/// The tree.
 #[derive(Debug, Default)]
 pub(super) struct Boxes {
+    /// The nodes around edges: the first so many of these. The others are what earlier shapes left, to be written over.
+    edges: Vec<Node>,
+    used: usize,
+    /// The levels above them, upwards.
     levels: Vec<Vec<Node>>,
+    /// How many levels there are, that of the edges counted.
     height: usize,
     pairs: Vec<Pair>,
 }
@@ -71,69 +79,71 @@ pub(super) type Numbers = [u32; 2];
 impl Boxes {
     pub(super) fn clear(&mut self) {
         self.levels.iter_mut().for_each(Vec::clear);
-        self.height = 0;
+        (self.used, self.height) = (0, 0);
     }
 
     /// The number of nodes around edges so far.
     #[inline(always)]
     pub(super) fn len(&self) -> usize {
-        self.levels.first().map_or(0, Vec::len)
+        self.used
     }
 
     /// Keeps so many of them.
     #[inline(always)]
     pub(super) fn truncate(&mut self, len: usize) {
-        if let Some(edges) = self.levels.first_mut() {
-            edges.truncate(len);
-        }
+        self.used = self.used.min(len);
     }
 
-    /// Adds the edges of an outline: those between `corners`, the last of which is the first one once more.
-    /// The first has number `first`. False, and nothing is added, if one of them has no length.
+    /// Those in `nodes`.
     #[inline(always)]
-    pub(super) fn add<S: Simd>(&mut self, simd: S, corners: &[FixedPoint], first: u32) -> bool {
-        let outline = [first, first + (corners.len().max(2) - 2) as u32];
-        if self.levels.is_empty() {
-            self.levels.push(Vec::new());
+    fn edges(&self, nodes: Range<usize>) -> &[Node] {
+        self.edges.get(nodes).unwrap_or(&[])
+    }
+
+    /// Adds the `count` edges of an outline, each from one of `corners` to the next, and says which box is around them.
+    /// The first corner has number `first` and is there once more at the end, and as often as it takes to make the number of corners a multiple
+    /// of eight. `None`, and nothing is added, if one of the edges has no length.
+    #[inline(always)]
+    pub(super) fn add<S: Simd>(&mut self, simd: S, corners: &[FixedPoint], count: usize, first: u32) -> Option<Bounds> {
+        let outline = [first, first + count.saturating_sub(1) as u32];
+        let (start, mut have_length, mut around) = (self.used, true, Bounds::EMPTY);
+        let end = start + count.div_ceil(8);
+        if end > self.edges.len() {
+            self.edges.resize(end, Node::EMPTY);
         }
-        let Some(edges) = self.levels.first_mut() else { return true };
-        let (start, mut have_length) = (edges.len(), true);
         // Made where they stay: a node that is moved is written in parts and read as a whole, and then has to be waited for.
-        edges.resize(start + (corners.len().max(1) - 1).div_ceil(8), Node::EMPTY);
-        let nodes = edges.get_mut(start..).unwrap_or(&mut []);
-        for (node, place) in nodes.iter_mut().zip((0..).step_by(8)) {
-            let Some(rest @ [corner, others @ ..]) = corners.get(place..) else { break };
-            let mut padded = [*corner; 9];
-            let (nine, count) = match rest.first_chunk() {
-                Some(nine) => (nine, 8),
-                None => {
-                    for (corner, other) in padded.iter_mut().skip(1).zip(others) {
-                        *corner = *other;
-                    }
-                    (&padded, others.len())
+        let nodes = self.edges.get_mut(start..end)?;
+        let mut turn = Turn::of(corners, count);
+        let mut unset = nodes.iter_mut();
+        for_eights(
+            corners,
+            count,
+            #[inline(always)]
+            |place, eight, next, count| {
+                if let Some(node) = unset.next() {
+                    have_length &= node.set_edges(simd, eight, next, count, &mut turn);
+                    (node.first, node.outline) = (first + place as u32, outline);
+                    around = around.with(node.around);
                 }
-            };
-            have_length &= node.set_edges(simd, nine, count, first + place as u32, outline);
-        }
+            },
+        );
         if !have_length {
-            edges.truncate(start);
+            return None;
         }
-        have_length
-    }
-
-    /// The box around the edges in `nodes`.
-    #[inline(always)]
-    pub(super) fn around(&self, nodes: Range<usize>) -> Bounds {
-        let nodes = self.levels.first().and_then(|edges| edges.get(nodes)).unwrap_or(&[]);
-        nodes.iter().fold(Bounds::EMPTY, |around, node| around.with(node.around))
+        self.used = end;
+        if turn.is_whole() {
+            for node in nodes {
+                (node.is_star, node.is_ordered, node.ordered) = (true, true, 0xff);
+            }
+        }
+        Some(around)
     }
 
     /// The leftmost corner of the outline whose edges are in `nodes`, and that lies in a box; of several the last, which is moved to the
     /// right least ([`orientation`](super::orientation)).
     #[inline(always)]
     pub(super) fn leftmost(&self, nodes: Range<usize>, around: Bounds, corners: &[FixedPoint]) -> Option<u32> {
-        let nodes = self.levels.first()?.get(nodes)?;
-        nodes.iter().rev().filter(|node| node.around.left == around.left).find_map(|node| {
+        self.edges(nodes).iter().rev().filter(|node| node.around.left == around.left).find_map(|node| {
             let [_, last] = node.outline;
             let own = corners.get(node.first as usize..=last.min(node.first + 7) as usize)?;
             Some(node.first + own.iter().rposition(|corner| corner.x == around.left)? as u32)
@@ -143,22 +153,20 @@ impl Boxes {
     /// Builds the levels above the edges, where there are more than [`FEW`] nodes around those.
     #[inline(always)]
     pub(super) fn build(&mut self) {
-        self.height = 1;
-        while let Some((below, above)) = self.levels.split_at_mut_checked(self.height)
-            && let Some(below) = below.last()
-            && below.len() > if self.height == 1 { FEW } else { 1 }
-        {
-            if above.is_empty() {
-                self.levels.push(Vec::new());
-                continue;
+        let Self { edges, used, levels, height, .. } = self;
+        *height = 1;
+        let mut count = *used;
+        while count > if *height == 1 { FEW } else { 1 } {
+            if levels.len() < *height {
+                levels.push(Vec::new());
             }
-            if let Some(level) = above.first_mut() {
-                let are_edges = self.height == 1;
-                for (first, nodes) in (0..).step_by(8).zip(below.chunks(8)) {
-                    level.push(Node::of_nodes(nodes, first, are_edges));
-                }
+            let Some((below, [level, ..])) = levels.split_at_mut_checked(*height - 1) else { break };
+            let (below, are_edges) =
+                below.last().map_or_else(|| (edges.get(..*used).unwrap_or(&[]), true), |below| (below, false));
+            for (first, nodes) in (0..).step_by(8).zip(below.chunks(8)) {
+                level.push(Node::of_nodes(nodes, first, are_edges));
             }
-            self.height += 1;
+            (count, *height) = (level.len(), *height + 1);
         }
     }
 
@@ -170,21 +178,23 @@ impl Boxes {
         looks: &mut usize,
         mut meet: impl FnMut(Numbers, Numbers) -> bool,
     ) -> bool {
-        let Self { levels, height, pairs } = self;
+        let Self { edges, used, levels, height, pairs } = self;
+        let edges = edges.get(..*used).unwrap_or(&[]);
         let Some(top) = height.checked_sub(1) else { return true };
         if top == 0 {
-            let used = levels.first().map_or(Some(0), |nodes| for_pairs_of_few(simd, nodes, &mut meet));
-            return take_looks(looks, used);
+            return take_looks(looks, for_pairs_of_few(simd, edges, &mut meet));
         }
         pairs.clear();
         pairs.push(Pair { level: top as u32, one: 0, other: 0 });
         while let Some(Pair { level, one, other }) = pairs.pop() {
             let Some(lower) = level.checked_sub(1) else { break };
-            let [below, level_nodes] =
-                [lower, level].map(|level| levels.get(level as usize).map_or(&[][..], Vec::as_slice));
+            let [below, level_nodes] = [lower, level].map(|level| nodes_of(edges, levels, level));
             let (Some(own), Some(others)) = (level_nodes.get(one as usize), level_nodes.get(other as usize)) else {
                 break;
             };
+            if own.is_star_of(others) {
+                continue;
+            }
             let mut lanes = own.near(simd, others.around);
             let mut used = 1 + lanes.count_ones() as usize;
             while lanes != 0 {
@@ -223,7 +233,7 @@ impl Boxes {
         point: FixedPoint,
         mut found: impl FnMut(Numbers),
     ) -> usize {
-        let nodes = self.levels.first().and_then(|edges| edges.get(nodes)).unwrap_or(&[]);
+        let nodes = self.edges(nodes);
         for node in nodes {
             let mut near = node.near(simd, Bounds::left_of(point));
             while near != 0 {
@@ -247,13 +257,13 @@ impl Boxes {
             let used = self.for_left_of_in(simd, 0..self.len(), point, found);
             return take_looks(looks, Some(used));
         }
-        let Self { levels, height, pairs } = self;
+        let Self { edges, levels, height, pairs, .. } = self;
         let Some(top) = height.checked_sub(1) else { return true };
         let beside = Bounds::left_of(point);
         pairs.clear();
         pairs.push(Pair { level: top as u32, one: 0, other: 0 });
         while let Some(Pair { level, one, .. }) = pairs.pop() {
-            let Some(node) = levels.get(level as usize).and_then(|nodes| nodes.get(one as usize)) else { break };
+            let Some(node) = nodes_of(edges, levels, level).get(one as usize) else { break };
             let mut near = node.near(simd, beside);
             if !take_looks(looks, Some(1)) {
                 return false;
@@ -269,6 +279,15 @@ impl Boxes {
             }
         }
         true
+    }
+}
+
+/// Those of a level.
+#[inline(always)]
+fn nodes_of<'a>(edges: &'a [Node], levels: &'a [Vec<Node>], level: u32) -> &'a [Node] {
+    match (level as usize).checked_sub(1) {
+        Some(above) => levels.get(above).map_or(&[], Vec::as_slice),
+        None => edges,
     }
 }
 
@@ -295,6 +314,9 @@ fn for_pairs_of_few<S: Simd>(
     let mut looks = 1;
     for (index, own) in nodes.iter().enumerate() {
         for other in nodes.get(index..).unwrap_or(&[]) {
+            if own.is_star_of(other) {
+                continue;
+            }
             let is_same = own.first == other.first;
             if if is_same { !own.is_ordered } else { own.around.meets(other.around) } {
                 looks += own.for_pairs(simd, other, meet)?;
@@ -315,33 +337,38 @@ impl Node {
         outline: [0; 2],
         ways: 0,
         is_ordered: false,
+        is_star: false,
         ordered: 0,
     };
 
-    /// Makes it that of the first `count` of the edges between nine corners, and says whether all of them have a length. The first corner is
-    /// number `first`.
+    /// Makes it that of the first `count` of the edges between eight corners and the next, and says whether all of them have a length. `turn` is
+    /// that of the edges before.
     #[inline(always)]
     fn set_edges<S: Simd>(
         &mut self,
         simd: S,
-        corners: &[FixedPoint; 9],
+        corners: &[FixedPoint; 8],
+        next: FixedPoint,
         count: usize,
-        first: u32,
-        outline: [u32; 2],
+        turn: &mut Turn,
     ) -> bool {
-        let [start @ .., last] = corners;
-        let (from_x, from_y) = coordinates(simd, start);
+        let (from_x, from_y) = coordinates(simd, corners);
         // Not loaded as well, from between what was just written.
         let (to_x, to_y) =
-            (from_x.slide::<1>(i32x8::splat(simd, last.x)), from_y.slide::<1>(i32x8::splat(simd, last.y)));
+            (from_x.slide::<1>(i32x8::splat(simd, next.x)), from_y.slide::<1>(i32x8::splat(simd, next.y)));
+        let edges = Eight { from: [from_x, from_y], to: [to_x, to_y], count };
         let others = !0_u32 << count & 0xff;
         let have_length = (from_x.simd_eq(to_x) & from_y.simd_eq(to_y)).to_bitmask() as u32 & !others == 0;
-        // Each goes some way along the line from the first corner to the last. The margin is more than what rounding may add.
-        let chord = corners.get(count).map_or((0, 0), |end| (end.x - start[0].x, end.y - start[0].y));
-        let (across, down) = ((to_x - from_x).to_float::<f32x8<S>>(), (to_y - from_y).to_float::<f32x8<S>>());
-        let (across, down) = (across * chord.0 as f32, down * chord.1 as f32);
-        let margin = (across.abs() + down.abs()) * (1.0 / (1 << 20) as f32);
-        let is_ordered = (across + down).simd_gt(margin).to_bitmask() as u32 | others == 0xff;
+        let mut is_ordered = turn.goes_on() && turn.go(simd, &edges);
+        if !turn.goes_on() {
+            // Each goes some way along the line from the first corner to the last. The margin is more than what rounding may add.
+            let (start, end) = (corners[0], corners.get(count).unwrap_or(&next));
+            let chord = (end.x - start.x, end.y - start.y);
+            let (across, down) = ((to_x - from_x).to_float::<f32x8<S>>(), (to_y - from_y).to_float::<f32x8<S>>());
+            let (across, down) = (across * chord.0 as f32, down * chord.1 as f32);
+            let margin = (across.abs() + down.abs()) * (1.0 / (1 << 20) as f32);
+            is_ordered = (across + down).simd_gt(margin).to_bitmask() as u32 | others == 0xff;
+        }
         let (mut left, mut right) = (min_i32(from_x, to_x), max_i32(from_x, to_x));
         let (mut top, mut bottom) = (min_i32(from_y, to_y), max_i32(from_y, to_y));
         if count < 8 {
@@ -357,7 +384,8 @@ impl Node {
         top.store_array(&mut self.top);
         right.store_array(&mut self.right);
         bottom.store_array(&mut self.bottom);
-        (self.around, self.first, self.outline) = (around, first, outline);
+        self.around = around;
+        (self.is_star, self.ways) = (false, 0);
         (self.is_ordered, self.ordered) = (is_ordered, if is_ordered { 0xff } else { 0 });
         have_length
     }
@@ -375,7 +403,12 @@ impl Node {
             (*right, *bottom) = (child.around.right, child.around.bottom);
             *around = around.with(child.around);
         }
-        if nodes.iter().all(|child| child.outline == outline) {
+        if !nodes.iter().all(|child| child.outline == outline) {
+            return node;
+        }
+        if nodes.first().is_some_and(|child| child.is_star) {
+            (node.is_star, node.is_ordered) = (true, true);
+        } else {
             node.ways = node.ways_of_lanes();
             // Few get here.
             if is_one_way(node.ways) {
@@ -409,6 +442,9 @@ impl Node {
         others: &Self,
         meet: &mut impl FnMut(Numbers, Numbers) -> bool,
     ) -> Option<usize> {
+        if self.is_star_of(others) {
+            return Some(1);
+        }
         let is_same = self.first == others.first;
         let follows = others.first == self.first + 8 && self.outline == others.outline;
         let mut lanes = if is_same { self.near_own(simd) } else { self.near(simd, others.around) };
@@ -431,6 +467,12 @@ impl Node {
             }
         }
         Some(looks)
+    }
+
+    /// Whether all of this and of another belongs to an outline whose edges do not meet.
+    #[inline(always)]
+    fn is_star_of(&self, other: &Self) -> bool {
+        self.is_star && self.outline == other.outline
     }
 
     /// The corners of an edge.
@@ -526,13 +568,6 @@ impl Bounds {
     }
 }
 
-/// x and y of eight points.
-#[inline(always)]
-fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; 8]) -> (i32x8<S>, i32x8<S>) {
-    let [low, high]: [[i32; 8]; 2] = bytemuck::cast(*points);
-    i32x8::load_array(simd, low).deinterleave(i32x8::load_array(simd, high))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -546,6 +581,13 @@ mod tests {
             self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (self.0 >> 8) as i32 % end
         }
+    }
+
+    /// An outline's corners with its first one as often as it takes to make their number a multiple of eight.
+    fn padded(outline: &[FixedPoint]) -> Vec<FixedPoint> {
+        let mut corners = outline.to_vec();
+        corners.resize(outline.len().next_multiple_of(8), outline[0]);
+        corners
     }
 
     fn bounds(corners: &[FixedPoint], [from, to]: Numbers) -> Bounds {
@@ -570,7 +612,7 @@ mod tests {
     }
 
     /// Closed outlines one after another, as walks by steps or with corners anywhere; their edges and the tree.
-    fn outlines(random: &mut Random, level: SimdLevel) -> (Vec<FixedPoint>, Vec<Vec<Numbers>>, Boxes) {
+    fn outlines(random: &mut Random, level: SimdLevel) -> (Vec<FixedPoint>, Vec<(Vec<Numbers>, Bounds)>, Boxes) {
         let (mut corners, mut edges, mut boxes) = (Vec::new(), Vec::new(), Boxes::default());
         for _ in 0..1 + random.below(4) {
             let first = corners.len();
@@ -588,8 +630,8 @@ mod tests {
             let number = |index: usize| index as u32;
             let last = corners.len() - 2;
             let next = |index: usize| if index == last { first } else { index + 1 };
-            edges.push((first..=last).map(|index| [number(index), number(next(index))]).collect());
-            assert!(dispatch!(level, simd => boxes.add(simd, &corners[first..], first as u32)));
+            let around = dispatch!(level, simd => boxes.add(simd, &padded(&corners[first..]), corners.len() - first - 1, first as u32)).unwrap();
+            edges.push(((first..=last).map(|index| [number(index), number(next(index))]).collect(), around));
         }
         boxes.build();
         (corners, edges, boxes)
@@ -610,7 +652,7 @@ mod tests {
                 })));
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "round {round}: twice");
-                let edges = outlines.concat();
+                let edges: Vec<_> = outlines.into_iter().flat_map(|(edges, _)| edges).collect();
                 for (index, edge) in edges.iter().enumerate() {
                     for other in &edges[index + 1..] {
                         let (follow, pair) = (edge[1] == other[0] || other[1] == edge[0], [*edge, *other]);
@@ -645,10 +687,9 @@ mod tests {
                 let (corners, outlines, mut boxes) = outlines(&mut random, level);
                 let point = corners[random.below(corners.len() as i32) as usize];
                 let (mut node, mut found_one_by_one) = (0, Vec::new());
-                for edges in &outlines {
-                    let nodes = node..node + edges.len().div_ceil(8);
+                for (edges, around) in &outlines {
+                    let (nodes, around) = (node..node + edges.len().div_ceil(8), *around);
                     node = nodes.end;
-                    let around = boxes.around(nodes.clone());
                     let expected = edges.iter().map(|edge| bounds(&corners, *edge)).reduce(Bounds::with).unwrap();
                     assert_eq!(
                         [around.left, around.top, around.right, around.bottom],
@@ -668,7 +709,7 @@ mod tests {
                 let (mut found, mut looks) = (Vec::new(), usize::MAX);
                 assert!(dispatch!(level, simd => boxes.for_left_of(simd, point, &mut looks, |edge| found.push(edge))));
                 found.sort_unstable();
-                let mut beside = outlines.concat();
+                let mut beside: Vec<_> = outlines.into_iter().flat_map(|(edges, _)| edges).collect();
                 beside.retain(|edge| {
                     let bounds = bounds(&corners, *edge);
                     bounds.left <= point.x && bounds.top <= point.y && point.y <= bounds.bottom
@@ -709,11 +750,14 @@ mod tests {
                 };
             }
             let mut boxes = Boxes::default();
-            assert!(dispatch!(SimdLevel::best(), simd => boxes.add(simd, &corners, 0)));
+            assert!(
+                dispatch!(SimdLevel::best(), simd => boxes.add(simd, &padded(&corners), corners.len() - 1, 0))
+                    .is_some()
+            );
             boxes.build();
-            let is_ordered: Vec<_> = boxes.levels[1].iter().map(|node| node.is_ordered).collect();
+            let is_ordered: Vec<_> = boxes.levels[0].iter().map(|node| node.is_ordered).collect();
             assert_eq!(is_ordered, [is_straight, true, true, true, false], "round {round}");
-            assert!(!boxes.levels[2][0].is_ordered);
+            assert!(!boxes.levels[1][0].is_ordered);
         }
     }
 
@@ -724,7 +768,7 @@ mod tests {
         for count in [3, 8, 9, 20] {
             let mut corners: Vec<_> = (0..count).map(|i| corner(i * i, i * 7)).collect();
             corners.push(corners[0]);
-            let add = |boxes: &mut Boxes, corners: &[FixedPoint]| dispatch!(SimdLevel::best(), simd => boxes.add(simd, corners, 0));
+            let add = |boxes: &mut Boxes, corners: &[FixedPoint]| dispatch!(SimdLevel::best(), simd => boxes.add(simd, &padded(corners), corners.len() - 1, 0).is_some());
             assert!(add(&mut boxes, &corners));
             for index in 0..corners.len() {
                 let mut repeated = corners.clone();

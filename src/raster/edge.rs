@@ -1,7 +1,7 @@
 //! Edges: the straight pieces of outlines, in 24.8 fixed point.
 
-use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
+use fearless_simd::{f32x16, i32x8};
 
 use crate::geom::Point;
 use crate::num::fixed;
@@ -102,32 +102,47 @@ fn rounded<S: Simd>(simd: S, block: [Point; 8]) -> [FixedPoint; 8] {
     bytemuck::cast(truncate_sixteen_f32(v.round_ties_even()).to_array())
 }
 
-/// A closed polygon's corners in fixed point, the first one once more at the end, if it is not there.
+/// Appends a closed polygon's corners in fixed point, rounded to nearest, ties to even: eight device points within ±2^22 at a time, of which
+/// `count` are the polygon's and the others are as its first. The answer says how many of them there are with the first one once more at
+/// the end, where it may have been before; those that follow are as the first.
 #[inline(always)]
-pub(super) fn append_closed<S: Simd>(simd: S, polygon: &[Point], out: &mut Vec<FixedPoint>) {
+pub(super) fn append_eights<S: Simd>(simd: S, eights: &[[Point; 8]], count: usize, out: &mut Vec<FixedPoint>) -> usize {
     let start = out.len();
-    append_fixed(simd, polygon, out);
-    if let Some(first) = out.get(start)
-        && (out.last() != Some(first) || out.len() == start + 1)
-    {
-        out.push(*first);
+    for block in eights {
+        out.extend_from_slice(&rounded(simd, *block));
+    }
+    let ends = [out.get(start), out.get(start + count.saturating_sub(1))];
+    if count > 1 && ends[0] == ends[1] { count } else { count + 1 }
+}
+
+/// As [`append_eights`], without what follows.
+#[inline(always)]
+pub(super) fn append_closed<S: Simd>(simd: S, eights: &[[Point; 8]], count: usize, out: &mut Vec<FixedPoint>) {
+    let start = out.len();
+    let count = append_eights(simd, eights, count, out);
+    out.truncate(start + count);
+}
+
+/// Calls `f` with eight corners of an outline at a time: with the number of the first of them, with the corner after them, which is the first of
+/// all where there is none, and with how many of the eight edges from corner to corner are among the first `count` of all.
+#[inline(always)]
+pub(super) fn for_eights(
+    corners: &[FixedPoint],
+    count: usize,
+    mut f: impl FnMut(usize, &[FixedPoint; 8], FixedPoint, usize),
+) {
+    let first = corners.first().copied().unwrap_or_default();
+    let mut rest = corners;
+    for place in (0..count).step_by(8) {
+        let Some((eight, after)) = rest.split_first_chunk::<8>() else { break };
+        rest = after;
+        f(place, eight, after.first().copied().unwrap_or(first), (count - place).min(8));
     }
 }
 
-/// Appends device points within ±2^22 as fixed point, rounded to nearest, ties to even.
+/// The x and the y of eight points.
 #[inline(always)]
-pub(super) fn append_fixed<S: Simd>(simd: S, points: &[Point], out: &mut Vec<FixedPoint>) {
-    let (blocks, rest) = points.as_chunks::<8>();
-    for block in blocks {
-        out.extend_from_slice(&rounded(simd, *block));
-    }
-    if !rest.is_empty() {
-        let mut last = [Point::ZERO; 8];
-        for (last, p) in last.iter_mut().zip(rest) {
-            *last = *p;
-        }
-        let end = out.len() + rest.len();
-        out.extend_from_slice(&rounded(simd, last));
-        out.truncate(end);
-    }
+pub(super) fn coordinates<S: Simd>(simd: S, points: &[FixedPoint; 8]) -> (i32x8<S>, i32x8<S>) {
+    let [low, high]: [[i32; 8]; 2] = bytemuck::cast(*points);
+    i32x8::load_array(simd, low).deinterleave(i32x8::load_array(simd, high))
 }

@@ -12,11 +12,12 @@
 //! they are put in order exactly as well. Kept pieces thus always close: what rounding may change is some 2^-17 of a pixel, never a row.
 
 use core::cmp::Ordering;
+use core::ops::Range;
 
 use fearless_simd::Simd;
 
 use super::boxes::{Bounds, Boxes, FEW, Numbers};
-use super::edge::{FixedPoint, append_closed};
+use super::edge::{FixedPoint, append_eights};
 use super::orientation::{Corner, Ends, area, is_right_of};
 use crate::num::lanes::round_f64;
 use crate::path::polygons::Polygons;
@@ -65,10 +66,20 @@ struct Crossing {
     next: u32,
 }
 
+/// What bounds the inside of polygons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Resolved {
+    /// Their outlines as they are, of which the corners were appended to those that were there.
+    Outlines,
+    /// Pieces of them.
+    Pieces,
+    /// It would take too long to find out.
+    Unknown,
+}
+
 /// Working memory, and the pieces of the shape in work.
 #[derive(Debug, Default)]
 pub(super) struct Resolver {
-    corners: Vec<FixedPoint>,
     outlines: Vec<Outline>,
     boxes: Boxes,
     crossings: Vec<Crossing>,
@@ -77,8 +88,6 @@ pub(super) struct Resolver {
     /// Those of the edge in work.
     along: Vec<Crossing>,
     pieces: Pieces,
-    /// Whether outlines bound the inside as they are.
-    are_whole: bool,
 }
 
 /// Polylines that bound the inside.
@@ -93,77 +102,96 @@ struct Pieces {
 }
 
 impl Resolver {
-    /// Finds the pieces that bound the inside of polygons, whose corners lie within a million pixels. False where it takes too long
-    /// to find out.
+    /// Finds what bounds the inside of polygons, whose corners lie within a million pixels.
     #[inline(never)]
-    pub(super) fn resolve<S: Simd>(&mut self, simd: S, polygons: &Polygons, rule: FillRule) -> bool {
+    pub(super) fn resolve<S: Simd>(
+        &mut self,
+        simd: S,
+        polygons: &Polygons,
+        rule: FillRule,
+        corners: &mut Vec<FixedPoint>,
+    ) -> Resolved {
         simd.vectorize(
             #[inline(always)]
             || {
-                self.list(simd, polygons);
-                if !self.find_crossings(simd) {
-                    return false;
+                let start = corners.len();
+                self.list(simd, polygons, corners);
+                let resolved = self.resolve_listed(simd, rule, corners.get(start..).unwrap_or(&[]));
+                if resolved != Resolved::Outlines {
+                    corners.truncate(start);
                 }
-                // One that does not cross itself winds around its inside once.
-                self.are_whole = self.outlines.len() <= 1 && self.crossings.is_empty();
-                if self.are_whole {
-                    return true;
-                }
-                let are_found = self.find_windings(simd).is_some();
-                if are_found {
-                    match rule {
-                        FillRule::NonZero => self.keep::<false>(),
-                        FillRule::EvenOdd => self.keep::<true>(),
-                    }
-                }
-                are_found
+                resolved
             },
         )
     }
 
+    #[inline(always)]
+    fn resolve_listed<S: Simd>(&mut self, simd: S, rule: FillRule, corners: &[FixedPoint]) -> Resolved {
+        if !self.find_crossings(simd, corners) {
+            return Resolved::Unknown;
+        }
+        // One that does not cross itself winds around its inside once.
+        if self.outlines.len() <= 1 && self.crossings.is_empty() {
+            return Resolved::Outlines;
+        }
+        if self.find_windings(simd, corners).is_none() {
+            return Resolved::Unknown;
+        }
+        match rule {
+            FillRule::NonZero => self.keep::<false>(corners),
+            FillRule::EvenOdd => self.keep::<true>(corners),
+        }
+    }
+
+    /// Where the outlines' corners are, each with the first one once more at its end, of those that were appended.
+    pub(super) fn outlines(&self) -> impl Iterator<Item = Range<usize>> {
+        self.outlines.iter().map(|outline| outline.first as usize..outline.last as usize + 1)
+    }
+
     /// The pieces: polylines, each from its first to its last point. They have the inside on one side all.
     pub(super) fn pieces(&self) -> impl Iterator<Item = &[FixedPoint]> {
-        let (outlines, ends) =
-            if self.are_whole { (&self.outlines[..], &[][..]) } else { (&[][..], &self.pieces.ends[..]) };
-        let corners_of = |outline: &Outline| self.corners.get(outline.first as usize..=outline.last as usize);
         let mut start = 0;
-        let points_to = move |end: &u32| {
+        self.pieces.ends.iter().filter_map(move |end| {
             let end = *end as usize;
             let piece = self.pieces.points.get(start..end);
             start = end;
             piece
-        };
-        outlines.iter().map(corners_of).chain(ends.iter().map(points_to)).flatten()
+        })
     }
 
     /// The number of points of all pieces.
     pub(super) fn len(&self) -> usize {
-        if self.are_whole { self.corners.len() } else { self.pieces.points.len() }
+        self.pieces.points.len()
     }
 
     /// Lists corners, and boxes around edges. Corners that follow themselves are left out, as are outlines of fewer than three, whose area is 0.
     #[inline(always)]
-    fn list<S: Simd>(&mut self, simd: S, polygons: &Polygons) {
-        let Self { corners, outlines, boxes, .. } = self;
-        corners.clear();
+    fn list<S: Simd>(&mut self, simd: S, polygons: &Polygons, corners: &mut Vec<FixedPoint>) {
+        let Self { outlines, boxes, .. } = self;
         outlines.clear();
         boxes.clear();
-        for polygon in polygons.iter() {
-            let first = corners.len();
-            append_closed(simd, polygon, corners);
-            let node = boxes.len();
-            let mut is_listed = corners.get(first..).is_some_and(|closed| boxes.add(simd, closed, first as u32));
-            if !is_listed {
-                leave_out_repeated(corners, first);
-                is_listed = corners.get(first..).is_some_and(|closed| boxes.add(simd, closed, first as u32));
-            }
-            if !is_listed || corners.len() - first < 4 {
-                corners.truncate(first);
+        let start = corners.len();
+        for (eights, count) in polygons.iter_eights() {
+            let (start_of_this, node) = (corners.len(), boxes.len());
+            let first = (start_of_this - start) as u32;
+            let mut count = append_eights(simd, eights, count, corners);
+            // Called in one place, so that it is inlined.
+            let mut have_length = true;
+            let around = loop {
+                let own = corners.get(start_of_this..).unwrap_or(&[]);
+                let around = boxes.add(simd, own, count - 1, first);
+                if around.is_some() || !have_length {
+                    break around;
+                }
+                (count, have_length) = (leave_out_repeated(corners, start_of_this, count), false);
+            };
+            let Some(around) = around.filter(|_| count >= 4) else {
+                corners.truncate(start_of_this);
                 boxes.truncate(node);
                 continue;
-            }
-            let (first, last) = (first as u32, corners.len() as u32 - 1);
-            let (nodes, around) = ([node, boxes.len()], boxes.around(node..boxes.len()));
+            };
+            corners.truncate(start_of_this + count);
+            let (last, nodes) = (first + count as u32 - 1, [node, boxes.len()]);
             outlines.push(Outline { first, last, nodes, around, crosses: false, start: first, left: 0 });
         }
         boxes.build();
@@ -171,8 +199,8 @@ impl Resolver {
 
     /// Finds where edges cross; false where that takes too long.
     #[inline(always)]
-    fn find_crossings<S: Simd>(&mut self, simd: S) -> bool {
-        let Self { corners, boxes, crossings, first, .. } = self;
+    fn find_crossings<S: Simd>(&mut self, simd: S, corners: &[FixedPoint]) -> bool {
+        let Self { boxes, crossings, first, .. } = self;
         crossings.clear();
         first.clear();
         let mut looks = LOOKS + LOOKS_PER_CORNER * corners.len();
@@ -205,8 +233,8 @@ impl Resolver {
 
     /// Counts how often outlines wind beside the leftmost corner of each; `None` where that takes too long.
     #[inline(always)]
-    fn find_windings<S: Simd>(&mut self, simd: S) -> Option<()> {
-        let Self { corners, outlines, boxes, first, .. } = self;
+    fn find_windings<S: Simd>(&mut self, simd: S, corners: &[FixedPoint]) -> Option<()> {
+        let Self { outlines, boxes, first, .. } = self;
         let mut looks = LOOKS + LOOKS_PER_CORNER * corners.len();
         for index in 0..outlines.len() {
             let Outline { first: start, last, nodes: [node, end], around, .. } = *outlines.get(index)?;
@@ -242,15 +270,14 @@ impl Resolver {
         Some(())
     }
 
-    /// Keeps the pieces that bound the inside.
+    /// Keeps the pieces that bound the inside, unless all do.
     #[inline(always)]
-    fn keep<const EVEN_ODD: bool>(&mut self) {
-        let Self { corners, outlines, crossings, first, along, pieces, are_whole, .. } = self;
+    fn keep<const EVEN_ODD: bool>(&mut self, corners: &[FixedPoint]) -> Resolved {
+        let Self { outlines, crossings, first, along, pieces, .. } = self;
         let bounds = bounds::<EVEN_ODD>;
         let is = |way: i32| outlines.iter().all(|outline| !outline.crosses && bounds(outline.left) == way);
-        *are_whole = is(1) || is(-1);
-        if *are_whole {
-            return;
+        if is(1) || is(-1) {
+            return Resolved::Outlines;
         }
         pieces.clear();
         for outline in outlines {
@@ -290,6 +317,7 @@ impl Resolver {
             }
         }
         pieces.finish();
+        Resolved::Pieces
     }
 }
 
@@ -328,11 +356,12 @@ fn winding_right_of(corners: &[FixedPoint], edge: Numbers, corner: Corner) -> i3
     }
 }
 
-/// Leaves out corners from `first` on that are where the one before is.
-#[inline(always)]
-fn leave_out_repeated(corners: &mut Vec<FixedPoint>, first: usize) {
+/// Leaves out those of the `count` corners from `first` on that are where the one before is, and says how many are left; as often as it takes to
+/// make their number a multiple of eight, the first one follows.
+#[cold]
+fn leave_out_repeated(corners: &mut Vec<FixedPoint>, first: usize, count: usize) -> usize {
     let mut kept = first;
-    for index in first..corners.len() {
+    for index in first..first + count {
         let Some(corner) = corners.get(index).copied() else { break };
         let is_repeated = kept > first && corners.get(kept - 1) == Some(&corner);
         if !is_repeated && let Some(place) = corners.get_mut(kept) {
@@ -340,7 +369,12 @@ fn leave_out_repeated(corners: &mut Vec<FixedPoint>, first: usize) {
             kept += 1;
         }
     }
+    let count = kept - first;
     corners.truncate(kept);
+    if let Some(corner) = corners.get(first).copied() {
+        corners.resize(first + count.next_multiple_of(8), corner);
+    }
+    count
 }
 
 /// Where two edges cross; for each of them, which part of it lies before, and by how much the windings beside it change there.
@@ -606,8 +640,16 @@ mod tests {
         let polygons = polygons(outlines);
         let found = SimdLevel::available().into_iter().map(|level| {
             let mut resolver = Resolver::default();
-            let found = dispatch!(level, simd => resolver.resolve(simd, &polygons, rule));
-            (found && !resolver.are_whole).then(|| resolver.pieces().map(<[_]>::to_vec).collect())
+            // As if there were corners of another shape.
+            let mut corners = vec![FixedPoint { x: 7, y: 9 }];
+            let found = dispatch!(level, simd => resolver.resolve(simd, &polygons, rule, &mut corners));
+            if found == Resolved::Outlines {
+                let listed: Vec<_> = resolver.outlines().map(|outline| corners[1..][outline].to_vec()).collect();
+                assert_eq!(listed.concat(), corners[1..]);
+            } else {
+                assert_eq!(corners.len(), 1);
+            }
+            (found == Resolved::Pieces).then(|| resolver.pieces().map(<[_]>::to_vec).collect())
         });
         let found: Vec<_> = found.collect();
         assert!(found.windows(2).all(|pair| pair[0] == pair[1]), "levels differ");

@@ -32,5 +32,6 @@ pub(crate) mod rect;
 pub(crate) mod round_rect;
 pub(crate) mod sample;
 mod stair;
+mod star;
 pub(crate) mod sweep;
 pub mod triangulate;
