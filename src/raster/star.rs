@@ -19,9 +19,8 @@ pub(super) struct Turn {
     /// Whether all edges went on to the right, and to the left.
     right: bool,
     left: bool,
-    /// How often it came to the point's level from above, where it starts, and from beneath.
+    /// How often it came down to the point's level from above.
     falls: u32,
-    climbs: u32,
 }
 
 impl Turn {
@@ -34,7 +33,7 @@ impl Turn {
             (Some(a), Some(b)) => FixedPoint { x: (a.x + b.x) >> 1, y: (a.y + b.y) >> 1 },
             _ => FixedPoint::default(),
         };
-        Self { point, right: true, left: true, falls: 0, climbs: 0 }
+        Self { point, right: true, left: true, falls: 0 }
     }
 
     /// Whether it always went the same way. Not known of some that do, where rounding may matter.
@@ -46,7 +45,7 @@ impl Turn {
     /// Whether, at its end, it went around once.
     #[inline(always)]
     pub(super) fn is_whole(&self) -> bool {
-        // Each time around it comes to the point's level once from either side.
+        // Each time around it comes down once, and goes up.
         self.goes_on() && self.falls == 1
     }
 
@@ -57,19 +56,18 @@ impl Turn {
         let Eight { from: [from_x, from_y], to: [to_x, to_y], .. } = *edges;
         let (x, y) = (self.point.x, self.point.y);
         let (from_y, to_y) = (from_y - y, to_y - y);
-        let [falls, climbs] =
-            [from_y.simd_lt(0) & to_y.simd_ge(0), from_y.simd_ge(0) & to_y.simd_lt(0)].map(|passes| {
-                // A mask of its own: what stands for edges that are missing does not count.
-                (passes.to_bitmask() as u32 & !others).count_ones()
-            });
-        (self.falls, self.climbs) = (self.falls + falls, self.climbs + climbs);
-        let [from_x, from_y, to_x, to_y] = [from_x - x, from_y, to_x - x, to_y].map(|v| v.to_float::<f32x8<S>>());
+        let (from_above, to_above) =
+            (from_y.simd_lt(0).to_bitmask() as u32 & !others, to_y.simd_lt(0).to_bitmask() as u32 & !others);
+        self.falls += (from_above & !to_above).count_ones();
+        let (from_x, from_y) = ((from_x - x).to_float::<f32x8<S>>(), from_y.to_float::<f32x8<S>>());
+        let (to_x, to_y) = ((to_x - x).to_float::<f32x8<S>>(), to_y.to_float::<f32x8<S>>());
         // Twice the area that an edge spans with the point. The margin is more than what rounding may add.
         let (one, other) = (from_x * to_y, from_y * to_x);
         let (area, margin) = (one - other, (one.abs() + other.abs()) * (1.0 / (1 << 20) as f32));
         self.right &= area.simd_gt(margin).to_bitmask() as u32 | others == 0xff;
         self.left &= (f32x8::splat(simd, 0.0) - area).simd_gt(margin).to_bitmask() as u32 | others == 0xff;
-        self.goes_on() && falls + climbs <= 1
+        // It comes to the point's level each half of the way around.
+        self.goes_on() && (from_above ^ to_above).count_ones() <= 1
     }
 }
 
