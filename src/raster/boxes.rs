@@ -6,20 +6,16 @@
 use core::ops::Range;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, i32x8};
+use fearless_simd::{f32x8, i32x4, i32x8};
 
 use super::edge::{FixedPoint, coordinates, for_eights};
-use super::star::{Eight, Turn};
+use super::star::{Eight, Turn, Way};
 use crate::num::lanes::{least_of_each, max_i32, min_i32};
 
-/// A box with its sides.
+/// A box's left and upper side, and its right and lower one with all bits turned around (`!`), as are those of a [`Node`]: the box around others
+/// then has the least of all four, and two boxes meet if the sum of each one's `left` and the other's `right`, and so on, is below 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
-    left: i32,
-    top: i32,
-    right: i32,
-    bottom: i32,
-}
+pub(super) struct Bounds([i32; 4]);
 
 /// The boxes of up to eight edges or nodes. Where there are fewer, the others are empty.
 #[derive(Clone, Copy, Debug)]
@@ -100,11 +96,17 @@ impl Boxes {
         self.edges.get(nodes).unwrap_or(&[])
     }
 
-    /// Adds the `count` edges of an outline, each from one of `corners` to the next, and says which box is around them.
-    /// The first corner has number `first` and is there once more at the end, and as often as it takes to make the number of corners a multiple
-    /// of eight. `None`, and nothing is added, if one of the edges has no length.
+    /// Adds the `count` edges of an outline, each from one of `corners` to the next, and says which box is around them and, if it is found to
+    /// go around a point once, which way it turns. The first corner has number `first` and is there once more at the end, and as often as it takes
+    /// to make the number of corners a multiple of eight. `None`, and nothing is added, if one of the edges has no length.
     #[inline(always)]
-    pub(super) fn add<S: Simd>(&mut self, simd: S, corners: &[FixedPoint], count: usize, first: u32) -> Option<Bounds> {
+    pub(super) fn add<S: Simd>(
+        &mut self,
+        simd: S,
+        corners: &[FixedPoint],
+        count: usize,
+        first: u32,
+    ) -> Option<(Bounds, Option<Way>)> {
         let outline = [first, first + count.saturating_sub(1) as u32];
         let (start, mut have_length, mut around) = (self.used, true, Bounds::EMPTY);
         let end = start + count.div_ceil(8);
@@ -131,23 +133,37 @@ impl Boxes {
             return None;
         }
         self.used = end;
-        if turn.is_whole() {
+        let way = turn.whole();
+        if way.is_some() {
             for node in nodes {
                 (node.is_star, node.is_ordered, node.ordered) = (true, true, 0xff);
             }
         }
-        Some(around)
+        Some((around, way))
     }
 
     /// The leftmost corner of the outline whose edges are in `nodes`, and that lies in a box; of several the last, which is moved to the
     /// right least ([`orientation`](super::orientation)).
     #[inline(always)]
-    pub(super) fn leftmost(&self, nodes: Range<usize>, around: Bounds, corners: &[FixedPoint]) -> Option<u32> {
-        self.edges(nodes).iter().rev().filter(|node| node.around.left == around.left).find_map(|node| {
-            let [_, last] = node.outline;
-            let own = corners.get(node.first as usize..=last.min(node.first + 7) as usize)?;
-            Some(node.first + own.iter().rposition(|corner| corner.x == around.left)? as u32)
-        })
+    pub(super) fn leftmost<S: Simd>(
+        &self,
+        simd: S,
+        nodes: Range<usize>,
+        Bounds([left, ..]): Bounds,
+        corners: &[FixedPoint],
+    ) -> Option<u32> {
+        for node in self.edges(nodes).iter().rev() {
+            let mut lanes = i32x8::load_array_ref(simd, &node.left).simd_eq(left).to_bitmask() as u32;
+            while let Some(lane) = lanes.checked_ilog2() {
+                let number = node.first + lane;
+                // It may be where the edge ends, too: then, the outline's first corner.
+                if corners.get(number as usize)?.x == left {
+                    return Some(number);
+                }
+                lanes &= !(1 << lane);
+            }
+        }
+        None
     }
 
     /// Builds the levels above the edges, where there are more than [`FEW`] nodes around those.
@@ -303,7 +319,7 @@ fn take_looks(looks: &mut usize, used: Option<usize>) -> bool {
     }
 }
 
-/// [`Boxes::for_pairs`] of nodes around edges, compared with each other one by one. Says how many looks that took; `None` where `meet`
+/// [`Boxes::for_pairs`] of up to 31 nodes around edges, compared with each other one by one. Says how many looks that took; `None` where `meet`
 /// returned false.
 #[inline(always)]
 fn for_pairs_of_few<S: Simd>(
@@ -313,14 +329,17 @@ fn for_pairs_of_few<S: Simd>(
 ) -> Option<usize> {
     let mut looks = 1;
     for (index, own) in nodes.iter().enumerate() {
-        for other in nodes.get(index..).unwrap_or(&[]) {
-            if own.is_star_of(other) {
-                continue;
-            }
-            let is_same = own.first == other.first;
-            if if is_same { !own.is_ordered } else { own.around.meets(other.around) } {
-                looks += own.for_pairs(simd, other, meet)?;
-            }
+        // The node itself, then those further on.
+        let mut near = u32::from(!own.is_ordered);
+        let skipped = own.nodes_to_skip();
+        let turned = own.around.turned(simd);
+        for (lane, other) in (skipped..).zip(nodes.get(index + skipped..).unwrap_or(&[])) {
+            near |= u32::from(other.around.meets(simd, turned)) << lane;
+        }
+        while near != 0 {
+            let other = nodes.get(index + near.trailing_zeros() as usize)?;
+            near &= near - 1;
+            looks += own.for_pairs(simd, other, meet)?;
         }
     }
     Some(looks)
@@ -328,10 +347,10 @@ fn for_pairs_of_few<S: Simd>(
 
 impl Node {
     const EMPTY: Self = Self {
-        left: [i32::MAX; 8],
-        top: [i32::MAX; 8],
-        right: [i32::MIN; 8],
-        bottom: [i32::MIN; 8],
+        left: [NOWHERE; 8],
+        top: [NOWHERE; 8],
+        right: [NOWHERE; 8],
+        bottom: [NOWHERE; 8],
         around: Bounds::EMPTY,
         first: 0,
         outline: [0; 2],
@@ -369,17 +388,15 @@ impl Node {
             let margin = (across.abs() + down.abs()) * (1.0 / (1 << 20) as f32);
             is_ordered = (across + down).simd_gt(margin).to_bitmask() as u32 | others == 0xff;
         }
-        let (mut left, mut right) = (min_i32(from_x, to_x), max_i32(from_x, to_x));
-        let (mut top, mut bottom) = (min_i32(from_y, to_y), max_i32(from_y, to_y));
+        let (mut left, mut right) = (min_i32(from_x, to_x), !max_i32(from_x, to_x));
+        let (mut top, mut bottom) = (min_i32(from_y, to_y), !max_i32(from_y, to_y));
         if count < 8 {
             let is_one = i32x8::load_array(simd, [0, 1, 2, 3, 4, 5, 6, 7]).simd_lt(count as i32);
-            let (low, high) = (i32x8::splat(simd, i32::MIN), i32x8::splat(simd, i32::MAX));
-            (left, top) = (is_one.select(left, high), is_one.select(top, high));
-            (right, bottom) = (is_one.select(right, low), is_one.select(bottom, low));
+            let nowhere = i32x8::splat(simd, NOWHERE);
+            (left, top) = (is_one.select(left, nowhere), is_one.select(top, nowhere));
+            (right, bottom) = (is_one.select(right, nowhere), is_one.select(bottom, nowhere));
         }
-        // The greatest is the least of what all bits are turned around of.
-        let [least_x, least_y, greatest_x, greatest_y] = least_of_each([left, top, !right, !bottom]);
-        let around = Bounds { left: least_x, top: least_y, right: !greatest_x, bottom: !greatest_y };
+        let around = Bounds(least_of_each([left, top, right, bottom]));
         left.store_array(&mut self.left);
         top.store_array(&mut self.top);
         right.store_array(&mut self.right);
@@ -399,8 +416,7 @@ impl Node {
         let sides = left.iter_mut().zip(top).zip(right.iter_mut().zip(bottom));
         for ((lane, child), ((left, top), (right, bottom))) in nodes.iter().enumerate().zip(sides) {
             *ordered |= u8::from(child.is_ordered) << lane;
-            (*left, *top) = (child.around.left, child.around.top);
-            (*right, *bottom) = (child.around.right, child.around.bottom);
+            [*left, *top, *right, *bottom] = child.around.0;
             *around = around.with(child.around);
         }
         if !nodes.iter().all(|child| child.outline == outline) {
@@ -424,10 +440,10 @@ impl Node {
     #[inline(always)]
     fn ways_of_lanes(&self) -> u8 {
         let Self { left, top, right, bottom, .. } = self;
-        let count = left.iter().zip(right).take_while(|(left, right)| left <= right).count();
+        let count = left.iter().take_while(|left| **left != NOWHERE).count();
         let follow = |ends: &[i32; 8], starts: &[i32; 8], way: u8| {
             let starts = starts.iter().take(count).skip(1);
-            if ends.iter().zip(starts).all(|(end, start)| end == start) { way } else { 0 }
+            if ends.iter().zip(starts).all(|(end, start)| *end == !*start) { way } else { 0 }
         };
         let across = follow(right, left, RIGHT) | follow(left, right, LEFT);
         across | follow(bottom, top, DOWN) | follow(top, bottom, UP)
@@ -448,6 +464,9 @@ impl Node {
         let is_same = self.first == others.first;
         let follows = others.first == self.first + 8 && self.outline == others.outline;
         let mut lanes = if is_same { self.near_own(simd) } else { self.near(simd, others.around) };
+        if follows && lanes == 1 << 7 && others.near(simd, self.around) == 1 {
+            return Some(1);
+        }
         let looks = if is_same { Self::OWN_LOOKS } else { 1 + lanes.count_ones() as usize };
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
@@ -482,11 +501,18 @@ impl Node {
         [edge, if edge == last { first } else { edge + 1 }]
     }
 
+    /// So many nodes further on begin those that may meet this one: all that belongs to an outline whose edges do not meet is left out.
+    #[inline(always)]
+    fn nodes_to_skip(&self) -> usize {
+        let [first, last] = self.outline;
+        if self.is_star { (((last - first) >> 3) - ((self.first - first) >> 3) + 1) as usize } else { 1 }
+    }
+
     /// The box in lane `lane`.
     #[inline(always)]
     fn bounds(&self, lane: u32) -> Bounds {
         let at = |lanes: &[i32; 8]| lanes.get(lane as usize & 7).copied().unwrap_or(0);
-        Bounds { left: at(&self.left), top: at(&self.top), right: at(&self.right), bottom: at(&self.bottom) }
+        Bounds([at(&self.left), at(&self.top), at(&self.right), at(&self.bottom)])
     }
 
     /// How many looks it counts for to compare a node's edges with each other.
@@ -500,11 +526,11 @@ impl Node {
         // Which boxes meet the one so many lanes further on, around the end.
         macro_rules! near {
             ($step:literal) => {{
-                let apart = left.slide::<$step>(left).simd_gt(right)
-                    | left.simd_gt(right.slide::<$step>(right))
-                    | top.slide::<$step>(top).simd_gt(bottom)
-                    | top.simd_gt(bottom.slide::<$step>(bottom));
-                !(apart.to_bitmask() as u32) & 0xff
+                let meet = (left.slide::<$step>(left) + right)
+                    & (left + right.slide::<$step>(right))
+                    & (top.slide::<$step>(top) + bottom)
+                    & (top + bottom.slide::<$step>(bottom));
+                meet.simd_lt(0).to_bitmask() as u32
             }};
         }
         // Two of eight in a ring are at most four steps apart; those one step apart follow each other, but for the last and the first.
@@ -514,16 +540,13 @@ impl Node {
 
     /// Which boxes meet another, as bits.
     #[inline(always)]
-    fn near<S: Simd>(&self, simd: S, other: Bounds) -> u32 {
-        let splat = |v: i32| i32x8::splat(simd, v);
+    fn near<S: Simd>(&self, simd: S, Bounds([left, top, right, bottom]): Bounds) -> u32 {
         let load = |lanes: &[i32; 8]| i32x8::load_array_ref(simd, lanes);
-        // Where one side's sign says that they are apart. Sides are at most 2^28 from 0, but those of empty boxes, of which at least one difference
-        // is below 0 even where another wraps around.
-        let room = (load(&self.right) - splat(other.left))
-            | (splat(other.right) - load(&self.left))
-            | (load(&self.bottom) - splat(other.top))
-            | (splat(other.bottom) - load(&self.top));
-        room.simd_ge(0).to_bitmask() as u32
+        let meet = (load(&self.right) + left)
+            & (load(&self.left) + right)
+            & (load(&self.bottom) + top)
+            & (load(&self.top) + bottom);
+        meet.simd_lt(0).to_bitmask() as u32
     }
 }
 
@@ -533,38 +556,48 @@ fn is_one_way(ways: u8) -> bool {
     ways & (RIGHT | LEFT) != 0 && ways & (DOWN | UP) != 0
 }
 
+/// Where the sides of empty boxes are: corners are at most 2^28 from 0, so that such a side makes no sum with theirs, or its own, that is below 0.
+const NOWHERE: i32 = 3 << 28;
+
 impl Bounds {
-    const EMPTY: Self = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
+    const EMPTY: Self = Self([NOWHERE; 4]);
 
     /// A row from a point to the left, further than any box.
     #[inline(always)]
     fn left_of(point: FixedPoint) -> Self {
-        Self { left: -(1 << 30), top: point.y, right: point.x, bottom: point.y }
+        Self([-(1 << 30), point.y, !point.x, !point.y])
     }
 
-    /// Whether it lies beside a point, to its left or around it.
+    /// A point.
     #[inline(always)]
-    pub(super) fn is_left_of(self, point: FixedPoint) -> bool {
-        self.left <= point.x && self.top <= point.y && point.y <= self.bottom
+    pub(super) fn of(FixedPoint { x, y }: FixedPoint) -> Self {
+        Self([x, y, !x, !y])
+    }
+
+    /// Whether another lies in it.
+    #[inline(always)]
+    pub(super) fn contains<S: Simd>(&self, simd: S, other: &Self) -> bool {
+        let load = |sides: &[i32; 4]| i32x4::load_array_ref(simd, sides);
+        load(&self.0).simd_gt(load(&other.0)).to_bitmask() == 0
+    }
+
+    /// What to add to the sides of another box to see whether they meet.
+    #[inline(always)]
+    fn turned<S: Simd>(self, simd: S) -> i32x4<S> {
+        let sides = i32x4::load_array(simd, self.0);
+        sides.slide::<2>(sides)
     }
 
     /// Whether it has a point in common with another, be it of a side.
     #[inline(always)]
-    fn meets(self, other: Self) -> bool {
-        (self.left <= other.right)
-            & (other.left <= self.right)
-            & (self.top <= other.bottom)
-            & (other.top <= self.bottom)
+    fn meets<S: Simd>(&self, simd: S, turned: i32x4<S>) -> bool {
+        (i32x4::load_array_ref(simd, &self.0) + turned).simd_lt(0).to_bitmask() == 0xf
     }
 
     #[inline(always)]
     fn with(self, other: Self) -> Self {
-        Self {
-            left: self.left.min(other.left),
-            top: self.top.min(other.top),
-            right: self.right.max(other.right),
-            bottom: self.bottom.max(other.bottom),
-        }
+        let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
+        Self([a.min(e), b.min(f), c.min(g), d.min(h)])
     }
 }
 
@@ -590,13 +623,14 @@ mod tests {
         corners
     }
 
-    fn bounds(corners: &[FixedPoint], [from, to]: Numbers) -> Bounds {
+    /// The left, upper, right and lower side of the box around an edge.
+    fn bounds(corners: &[FixedPoint], [from, to]: Numbers) -> [i32; 4] {
         let (a, b) = (corners[from as usize], corners[to as usize]);
-        Bounds { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
+        [a.x.min(b.x), a.y.min(b.y), a.x.max(b.x), a.y.max(b.y)]
     }
 
-    fn meets(a: Bounds, b: Bounds) -> bool {
-        a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom
+    fn meets([left, top, right, bottom]: [i32; 4], other: [i32; 4]) -> bool {
+        left <= other[2] && other[0] <= right && top <= other[3] && other[1] <= bottom
     }
 
     /// Whether two edges have a point in common, or lie on one line.
@@ -630,7 +664,7 @@ mod tests {
             let number = |index: usize| index as u32;
             let last = corners.len() - 2;
             let next = |index: usize| if index == last { first } else { index + 1 };
-            let around = dispatch!(level, simd => boxes.add(simd, &padded(&corners[first..]), corners.len() - first - 1, first as u32)).unwrap();
+            let (around, _) = dispatch!(level, simd => boxes.add(simd, &padded(&corners[first..]), corners.len() - first - 1, first as u32)).unwrap();
             edges.push(((first..=last).map(|index| [number(index), number(next(index))]).collect(), around));
         }
         boxes.build();
@@ -686,24 +720,25 @@ mod tests {
             for round in 0..150 {
                 let (corners, outlines, mut boxes) = outlines(&mut random, level);
                 let point = corners[random.below(corners.len() as i32) as usize];
+                let FixedPoint { x, y } = point;
                 let (mut node, mut found_one_by_one) = (0, Vec::new());
                 for (edges, around) in &outlines {
                     let (nodes, around) = (node..node + edges.len().div_ceil(8), *around);
                     node = nodes.end;
-                    let expected = edges.iter().map(|edge| bounds(&corners, *edge)).reduce(Bounds::with).unwrap();
-                    assert_eq!(
-                        [around.left, around.top, around.right, around.bottom],
-                        [expected.left, expected.top, expected.right, expected.bottom]
-                    );
-                    if around.is_left_of(point) {
-                        let found = |edge| found_one_by_one.push(edge);
-                        dispatch!(level, simd => boxes.for_left_of_in(simd, nodes.clone(), point, found));
-                    }
+                    let sides = edges.iter().map(|edge| bounds(&corners, *edge));
+                    let [left, top, right, bottom] =
+                        sides.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]).unwrap();
+                    assert_eq!(around.0, [left, top, !right, !bottom]);
+                    let contains = (left..=right).contains(&x) && (top..=bottom).contains(&y);
+                    assert_eq!(dispatch!(level, simd => around.contains(simd, &Bounds::of(point))), contains);
+                    let found = |edge| found_one_by_one.push(edge);
+                    dispatch!(level, simd => boxes.for_left_of_in(simd, nodes.clone(), point, found));
                     let leftmost = edges.iter().map(|[from, _]| *from).min_by_key(|number| {
                         let corner = corners[*number as usize];
                         (corner.x, std::cmp::Reverse(*number))
                     });
-                    assert_eq!(boxes.leftmost(nodes, around, &corners), leftmost, "round {round}");
+                    let found = dispatch!(level, simd => boxes.leftmost(simd, nodes, around, &corners));
+                    assert_eq!(found, leftmost, "round {round}");
                 }
                 assert_eq!(boxes.len(), node);
                 let (mut found, mut looks) = (Vec::new(), usize::MAX);
@@ -711,8 +746,8 @@ mod tests {
                 found.sort_unstable();
                 let mut beside: Vec<_> = outlines.into_iter().flat_map(|(edges, _)| edges).collect();
                 beside.retain(|edge| {
-                    let bounds = bounds(&corners, *edge);
-                    bounds.left <= point.x && bounds.top <= point.y && point.y <= bounds.bottom
+                    let [left, top, _, bottom] = bounds(&corners, *edge);
+                    left <= x && top <= y && y <= bottom
                 });
                 beside.sort_unstable();
                 assert_eq!(found, beside, "round {round}");

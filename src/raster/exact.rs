@@ -18,7 +18,8 @@ use fearless_simd::Simd;
 
 use super::boxes::{Bounds, Boxes, FEW, Numbers};
 use super::edge::{FixedPoint, append_eights};
-use super::orientation::{Corner, Ends, area, is_right_of};
+use super::orientation::{Corner, Ends, area, areas, is_right_of};
+use super::star::Way;
 use crate::num::lanes::round_f64;
 use crate::path::polygons::Polygons;
 use crate::style::FillRule;
@@ -46,9 +47,11 @@ struct Outline {
     /// Its first node of boxes, and the first of the next outline.
     nodes: [usize; 2],
     around: Bounds,
+    /// Which way it turns, if that is known.
+    way: Option<Way>,
     /// Whether an edge crosses another.
     crosses: bool,
-    /// How often outlines wind left of where it starts, which is its leftmost corner.
+    /// A corner, and how often outlines wind left of where it starts from there.
     start: u32,
     left: i32,
 }
@@ -85,8 +88,8 @@ pub(super) struct Resolver {
     crossings: Vec<Crossing>,
     /// For each edge, by the number of its first corner, one of its crossings.
     first: Vec<u32>,
-    /// Those of the edge in work.
-    along: Vec<Crossing>,
+    /// Those of the edge in work: their parts as bits, and their numbers.
+    along: Vec<(u64, u32)>,
     pieces: Pieces,
 }
 
@@ -185,14 +188,14 @@ impl Resolver {
                 }
                 (count, have_length) = (leave_out_repeated(corners, start_of_this, count), false);
             };
-            let Some(around) = around.filter(|_| count >= 4) else {
+            let Some((around, way)) = around.filter(|_| count >= 4) else {
                 corners.truncate(start_of_this);
                 boxes.truncate(node);
                 continue;
             };
             corners.truncate(start_of_this + count);
             let (last, nodes) = (first + count as u32 - 1, [node, boxes.len()]);
-            outlines.push(Outline { first, last, nodes, around, crosses: false, start: first, left: 0 });
+            outlines.push(Outline { first, last, nodes, around, way, crosses: false, start: first, left: 0 });
         }
         boxes.build();
     }
@@ -218,54 +221,66 @@ impl Resolver {
                     if first.is_empty() {
                         first.resize(corners.len(), NONE);
                     }
-                    for (([edge, _], other), (part, change)) in [(edge, other), (other, edge)].into_iter().zip(both) {
-                        if let Some(head) = first.get_mut(edge as usize) {
-                            let number = crossings.len() as u32;
-                            crossings.push(Crossing { part, place, other, change, next: *head });
-                            *head = number;
-                        }
-                    }
+                    let [(part, change), (other_part, other_change)] = both;
+                    let number = crossings.len() as u32;
+                    let mut put = |[edge, _]: Numbers, number: u32| {
+                        first.get_mut(edge as usize).map_or(NONE, |head| core::mem::replace(head, number))
+                    };
+                    let (next, other_next) = (put(edge, number), put(other, number + 1));
+                    crossings.extend_from_slice(&[
+                        Crossing { part, place, other, change, next },
+                        Crossing { part: other_part, place, other: edge, change: other_change, next: other_next },
+                    ]);
                 }
                 crossings.len() < most
             },
         )
     }
 
-    /// Counts how often outlines wind beside the leftmost corner of each; `None` where that takes too long.
+    /// Counts how often outlines wind beside a corner of each; `None` where that takes too long.
     #[inline(always)]
     fn find_windings<S: Simd>(&mut self, simd: S, corners: &[FixedPoint]) -> Option<()> {
         let Self { outlines, boxes, first, .. } = self;
         let mut looks = LOOKS + LOOKS_PER_CORNER * corners.len();
         for index in 0..outlines.len() {
-            let Outline { first: start, last, nodes: [node, end], around, .. } = *outlines.get(index)?;
+            let Outline { first: start, last, nodes: [node, end], around, way, .. } = *outlines.get(index)?;
             let edges = start as usize..last as usize;
             let crosses = first.get(edges).is_some_and(|first| first.iter().any(|first| *first != NONE));
-            let leftmost = corner(corners, boxes.leftmost(node..end, around, corners)?)?;
+            let (place, way) = match way.filter(|_| !crosses) {
+                Some(way) => (corner(corners, start)?, way),
+                // At its leftmost corner an outline turns to where it has its inside.
+                None => {
+                    let place = corner(corners, boxes.leftmost(simd, node..end, around, corners)?)?;
+                    let before = corner(corners, if place.number == start { last - 1 } else { place.number - 1 })?;
+                    let after = corner(corners, if place.number + 1 == last { start } else { place.number + 1 })?;
+                    let turns_right = is_right_of([before, place], after, area([before, place], after));
+                    (place, if turns_right { Way::Right } else { Way::Left })
+                }
+            };
             let mut outside = 0;
             let mut pass = |edge: Numbers| {
                 if !(start..last).contains(&edge[0]) {
-                    outside += winding_right_of(corners, edge, leftmost);
+                    outside += winding_right_of(corners, edge, place);
                 }
             };
-            // As few outlines as nodes: each is asked by itself, since most lie elsewhere.
+            // As few outlines as nodes: each is asked by itself, if its box is around the corner. Most are not.
             if outlines.len() <= FEW {
-                for (_, other) in outlines.iter().enumerate().filter(|(other, _)| *other != index) {
-                    if other.around.is_left_of(leftmost.point) {
-                        let [node, end] = other.nodes;
-                        looks = looks.checked_sub(boxes.for_left_of_in(simd, node..end, leftmost.point, &mut pass))?;
-                    }
+                let (mut others, point) = (0_u32, Bounds::of(place.point));
+                for (other, outline) in outlines.iter().enumerate() {
+                    others |= u32::from(outline.around.contains(simd, &point)) << other;
                 }
-            } else if !boxes.for_left_of(simd, leftmost.point, &mut looks, &mut pass) {
+                others &= !(1 << index);
+                while others != 0 {
+                    let [node, end] = outlines.get(others.trailing_zeros() as usize)?.nodes;
+                    others &= others - 1;
+                    looks = looks.checked_sub(boxes.for_left_of_in(simd, node..end, place.point, &mut pass))?;
+                }
+            } else if !boxes.for_left_of(simd, place.point, &mut looks, &mut pass) {
                 return None;
             }
             let outline = outlines.get_mut(index)?;
-            (outline.crosses, outline.start) = (crosses, leftmost.number);
-            let before = if leftmost.number == outline.first { outline.last - 1 } else { leftmost.number - 1 };
-            let after = if leftmost.number + 1 == outline.last { outline.first } else { leftmost.number + 1 };
-            let (before, after) = (corner(corners, before)?, corner(corners, after)?);
-            // At its leftmost corner an outline turns to where it has its inside.
-            let turns_right = is_right_of([before, leftmost], after, area([before, leftmost], after));
-            outline.left = if turns_right { outside } else { outside + 1 };
+            (outline.crosses, outline.start) = (crosses, place.number);
+            outline.left = if way == Way::Right { outside } else { outside + 1 };
         }
         Some(())
     }
@@ -283,7 +298,7 @@ impl Resolver {
         for outline in outlines {
             let (edges, start) = (outline.first as usize..outline.last as usize, outline.start as usize);
             let mut left = outline.left;
-            // From the leftmost corner to the end, and from the first corner on.
+            // From where the winding is known to the end, and from the first corner on.
             for part in [start..edges.end, edges.start..start] {
                 let mut from = part.start;
                 if !outline.crosses {
@@ -306,7 +321,8 @@ impl Resolver {
                         break;
                     };
                     let mut last = *start;
-                    for crossing in &*along {
+                    for (_, number) in &*along {
+                        let Some(crossing) = crossings.get(*number as usize) else { break };
                         pieces.step(last, crossing.place, bounds(left));
                         last = crossing.place;
                         left += crossing.change;
@@ -333,10 +349,11 @@ fn corner(corners: &[FixedPoint], number: u32) -> Option<Corner> {
     Some(Corner { point: *corners.get(number as usize)?, number })
 }
 
-/// An edge's corners.
+/// An edge's corners: each outline's first one stands at its end as well.
 #[inline(always)]
 fn ends_of(corners: &[FixedPoint], [from, to]: Numbers) -> Option<Ends> {
-    Some([corner(corners, from)?, corner(corners, to)?])
+    let [start, end] = *corners.get(from as usize..)?.first_chunk()?;
+    Some([Corner { point: start, number: from }, Corner { point: end, number: to }])
 }
 
 /// How often an edge winds around a corner of another outline, if it passes to the corner's left: 1 or -1, else 0.
@@ -380,13 +397,19 @@ fn leave_out_repeated(corners: &mut Vec<FixedPoint>, first: usize, count: usize)
 /// Where two edges cross; for each of them, which part of it lies before, and by how much the windings beside it change there.
 #[inline(always)]
 fn cross(edge: Ends, other: Ends) -> Option<(FixedPoint, [(f64, i32); 2])> {
-    let sides = |edge: Ends, [from, to]: Ends| {
-        let [from_area, to_area] = [area(edge, from), area(edge, to)];
-        let (from_right, to_right) = (is_right_of(edge, from, from_area), is_right_of(edge, to, to_area));
-        (from_right != to_right).then_some(([from_area, to_area], if to_right { -1 } else { 1 }))
+    // All four at once, and one question: which of two edges ends where is a guess.
+    let [areas, other_areas] = areas([edge, other]);
+    let is_tie = (areas[0] == 0) | (areas[1] == 0) | (other_areas[0] == 0) | (other_areas[1] == 0);
+    let ([from_right, to_right], [other_from_right, other_to_right]) = if is_tie {
+        sides_of_ties([edge, other], [areas, other_areas])
+    } else {
+        ([areas[0] > 0, areas[1] > 0], [other_areas[0] > 0, other_areas[1] > 0])
     };
-    let (areas, change) = sides(other, edge)?;
-    let (other_areas, other_change) = sides(edge, other)?;
+    if (from_right == to_right) | (other_from_right == other_to_right) {
+        return None;
+    }
+    let change = |to_right: bool| if to_right { -1 } else { 1 };
+    let (change, other_change) = (change(to_right), change(other_to_right));
     let [fraction, other_fraction] = fractions([edge, other], [areas, other_areas]);
     let ([from, to], part) = (edge, fraction.rounded());
     let place = FixedPoint {
@@ -394,6 +417,15 @@ fn cross(edge: Ends, other: Ends) -> Option<(FixedPoint, [(f64, i32); 2])> {
         y: from.point.y + part_of(to.point.y - from.point.y, fraction, part),
     };
     Some((place, [(part, change), (other_fraction.rounded(), other_change)]))
+}
+
+/// Whether the ends of each of two edges lie right of the other, of which some lie on one line with it.
+#[cold]
+fn sides_of_ties([edge, other]: [Ends; 2], [areas, other_areas]: [[i64; 2]; 2]) -> ([bool; 2], [bool; 2]) {
+    let sides = |edge: Ends, [from, to]: Ends, [from_area, to_area]: [i64; 2]| {
+        [is_right_of(edge, from, from_area), is_right_of(edge, to, to_area)]
+    };
+    (sides(other, edge, areas), sides(edge, other, other_areas))
 }
 
 /// A part of an edge.
@@ -466,28 +498,33 @@ fn part_exactly(length: i32, Fraction { numerator, denominator }: Fraction) -> i
 
 /// Lists the crossings of an edge from its start to its end, of which `head` is one.
 #[inline(always)]
-fn list_along(corners: &[FixedPoint], crossings: &[Crossing], edge: Numbers, head: u32, along: &mut Vec<Crossing>) {
+fn list_along(corners: &[FixedPoint], crossings: &[Crossing], edge: Numbers, head: u32, along: &mut Vec<(u64, u32)>) {
     /// More than the error of two quotients up to 1.
     const SURE: f64 = 1e-14;
     const FEW: usize = 4;
-    let order = |a: &Crossing, b: &Crossing| {
-        let distance = a.part - b.part;
-        if distance.abs() > SURE { distance.total_cmp(&0.0) } else { compare(corners, edge, a.other, b.other) }
-    };
     along.clear();
     let mut number = head;
     while let Some(crossing) = crossings.get(number as usize) {
-        along.push(*crossing);
+        // Parts are not negative: their bits are in the same order.
+        along.push((crossing.part.to_bits(), number));
         number = crossing.next;
     }
     if along.len() > FEW {
-        along.sort_unstable_by(order);
-        return;
+        along.sort_unstable_by_key(|(part, _)| *part);
     }
+    // What follows puts few in order, and those whose parts are nearly the same.
+    let is_after = |(part, number): (u64, u32), (other_part, other): (u64, u32)| {
+        let distance = f64::from_bits(part) - f64::from_bits(other_part);
+        if distance.abs() > SURE {
+            return distance > 0.0;
+        }
+        let others = [number, other].map(|number| crossings.get(number as usize).map(|crossing| crossing.other));
+        matches!(others, [Some(first), Some(second)] if compare(corners, edge, first, second).is_gt())
+    };
     for end in 1..along.len() {
         let mut place = end;
         while let Some([before, own]) = along.get_mut(place.wrapping_sub(1)..).and_then(|rest| rest.first_chunk_mut())
-            && order(before, own).is_gt()
+            && is_after(*before, *own)
         {
             core::mem::swap(before, own);
             place -= 1;
@@ -499,9 +536,8 @@ fn list_along(corners: &[FixedPoint], crossings: &[Crossing], edge: Numbers, hea
 #[cold]
 fn compare(corners: &[FixedPoint], edge: Numbers, first: Numbers, second: Numbers) -> Ordering {
     let part = |other: Numbers| {
-        let (edge, other) = (ends_of(corners, edge)?, ends_of(corners, other)?);
-        let areas = |edge: Ends, [from, to]: Ends| [area(edge, from), area(edge, to)];
-        let [part, _] = fractions([edge, other], [areas(other, edge), areas(edge, other)]);
+        let edges = [ends_of(corners, edge)?, ends_of(corners, other)?];
+        let [part, _] = fractions(edges, areas(edges));
         Some(part)
     };
     match (part(first), part(second)) {
@@ -728,6 +764,32 @@ mod tests {
         }
     }
 
+    /// Convex outlines, of which few cross others, inside of each other and beside each other, either way around; more of them than are asked one by one.
+    #[test]
+    fn convex_outlines_are_covered_as_by_scanlines() {
+        let mut random = Random(5);
+        for round in 0..60 {
+            let (count, size) = [(1 + round % 6, 7 * 256), (FEW + 5, 300)][round % 2];
+            let outlines: Vec<_> = (0..count)
+                .map(|_| {
+                    let (x, y) = (1800 + random.below(11_000), 1800 + random.below(500));
+                    let (across, down) = (40 + random.below(size), 40 + random.below(size));
+                    let corners = 4 + random.below(16);
+                    let mut outline = closed((0..corners).map(|corner| {
+                        let angle = f64::from(corner) / f64::from(corners) * core::f64::consts::TAU;
+                        let (sin, cos) = crate::num::trig::sin_cos(angle);
+                        (x + (f64::from(across) * cos) as i32, y + (f64::from(down) * sin) as i32)
+                    }));
+                    if random.below(2) == 0 {
+                        outline.reverse();
+                    }
+                    outline
+                })
+                .collect();
+            compare(&outlines, &format!("round {round}"));
+        }
+    }
+
     #[test]
     fn what_is_between_level_edges_is_inside_where_they_are_far_apart() {
         let frame = |left, top, right, bottom| closed([(left, top), (right, top), (right, bottom), (left, bottom)]);
@@ -745,7 +807,7 @@ mod tests {
         }
         // Of one in another, by the nonzero rule, the outer is left; of two that overlap, what is inside goes.
         let nested = pieces_of(&[frame(300, 700, 9000, 3000), frame(900, 1000, 8000, 2600)], FillRule::NonZero);
-        let outer = [(300, 3000), (9000, 3000), (9000, 700), (300, 700)];
+        let outer = [(300, 700), (300, 3000), (9000, 3000), (9000, 700)];
         assert_eq!(nested, Some(vec![closed(outer)]), "with its inside on the left");
         let overlapping = pieces_of(&[frame(0, 0, 512, 1024), frame(256, 512, 768, 2048)], FillRule::NonZero).unwrap();
         let edges = overlapping.iter().flat_map(|piece| piece.windows(2));

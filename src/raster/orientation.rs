@@ -32,6 +32,17 @@ pub(super) fn area([a, b]: Ends, c: Corner) -> i64 {
     bx * cy - by * cx
 }
 
+/// The areas of the triangles of each of two edges' corners with the other edge, as by [`area`].
+#[inline(always)]
+pub(super) fn areas([[a, b], [c, d]]: [Ends; 2]) -> [[i64; 2]; 2] {
+    let way = |from: Corner, to: Corner| (i64::from(to.point.x - from.point.x), i64::from(to.point.y - from.point.y));
+    let product = |(ax, ay): (i64, i64), (bx, by): (i64, i64)| ax * by - ay * bx;
+    let (edge, other, between) = (way(a, b), way(c, d), way(c, a));
+    // One end's area and the other's differ by the edges' product.
+    let (both, area, other_area) = (product(other, edge), product(other, between), product(between, edge));
+    [[area, area + both], [other_area, other_area - both]]
+}
+
 /// Whether `corner` lies right of an edge with which it makes a triangle of `area`.
 #[inline(always)]
 pub(super) fn is_right_of(edge: Ends, corner: Corner, area: i64) -> bool {
@@ -93,6 +104,24 @@ mod tests {
             }
         }
         assert!(ties > 500, "{ties}");
+    }
+
+    #[test]
+    fn areas_of_two_edges_are_those_of_four_triangles() {
+        let mut seed = 9_u32;
+        let mut corner = || {
+            let mut coordinate = || {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                // As far from 0 as corners may be.
+                [-(1 << 28), 1 << 28, (seed >> 4) as i32 - (1 << 27), (seed >> 28) as i32][(seed >> 26) as usize & 3]
+            };
+            Corner { point: FixedPoint { x: coordinate(), y: coordinate() }, number: 0 }
+        };
+        for _ in 0..2000 {
+            let [edge, other] = [[corner(), corner()], [corner(), corner()]];
+            let one_by_one = [other.map(|end| area(edge, end)), edge.map(|end| area(other, end))];
+            assert_eq!(areas([edge, other]), [one_by_one[1], one_by_one[0]], "{edge:?} {other:?}");
+        }
     }
 
     /// A product as high and low part, in order like the product itself.

@@ -13,6 +13,13 @@ pub(super) struct Eight<S: Simd> {
     pub(super) count: usize,
 }
 
+/// Which way an outline turns, as seen along it on the canvas: where its inside lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    Right,
+    Left,
+}
+
 /// How an outline has gone around a point so far.
 pub(super) struct Turn {
     point: FixedPoint,
@@ -42,11 +49,15 @@ impl Turn {
         self.right | self.left
     }
 
-    /// Whether, at its end, it went around once.
+    /// Which way it went around, if at its end it did so once.
     #[inline(always)]
-    pub(super) fn is_whole(&self) -> bool {
+    pub(super) fn whole(&self) -> Option<Way> {
         // Each time around it comes down once, and goes up.
-        self.goes_on() && self.falls == 1
+        match (self.falls, self.right, self.left) {
+            (1, true, _) => Some(Way::Right),
+            (1, _, true) => Some(Way::Left),
+            _ => None,
+        }
     }
 
     /// Goes on, and says whether these edges go less than once around, always the same way.
@@ -78,8 +89,8 @@ mod tests {
     use crate::num::trig::sin_cos;
     use crate::raster::edge::{coordinates, for_eights};
 
-    /// Whether an outline is found to go around once, at all levels.
-    fn goes_around(outline: &[(i32, i32)]) -> bool {
+    /// Which way an outline is found to go around once, at all levels.
+    fn goes_around(outline: &[(i32, i32)]) -> Option<Way> {
         let mut corners: Vec<_> = outline.iter().map(|(x, y)| FixedPoint { x: *x, y: *y }).collect();
         corners.resize((outline.len() + 1).next_multiple_of(8), corners[0]);
         let found = SimdLevel::available().into_iter().map(|level| {
@@ -90,7 +101,7 @@ mod tests {
                 let to = [x.slide::<1>(end(next.x)), y.slide::<1>(end(next.y))];
                 turn.go(simd, &Eight { from: [x, y], to, count });
             }));
-            turn.is_whole()
+            turn.whole()
         });
         let found: Vec<_> = found.collect();
         assert!(found.iter().all(|one| *one == found[0]), "levels differ");
@@ -136,7 +147,8 @@ mod tests {
             let circle = around(corners, 1.0, |_| 3000.0);
             let ellipse: Vec<_> = circle.iter().map(|(x, y)| (5 * x, y / 3)).collect();
             for outline in [circle, ellipse] {
-                assert!(goes_around(&outline) && goes_around(&reversed(&outline)), "{corners}");
+                assert_eq!(goes_around(&outline), Some(Way::Right), "{corners}");
+                assert_eq!(goes_around(&reversed(&outline)), Some(Way::Left), "{corners}");
             }
         }
         // Wherever it starts, as far out as there may be corners.
@@ -144,7 +156,8 @@ mod tests {
         let mut rectangle = [(-far, -far), (far, -far), (far, -far + 300), (-far, -far + 300)];
         for _ in 0..4 {
             rectangle.rotate_left(1);
-            assert!(goes_around(&rectangle) && goes_around(&reversed(&rectangle)));
+            assert_eq!(goes_around(&rectangle), Some(Way::Right));
+            assert_eq!(goes_around(&reversed(&rectangle)), Some(Way::Left));
         }
     }
 
@@ -159,7 +172,7 @@ mod tests {
             ("a line to and fro", vec![(0, 0), (500, 10), (1000, 20), (500, 10)]),
             ("a point", vec![(7, 7); 5]),
         ] {
-            assert!(!goes_around(&outline) && !goes_around(&reversed(&outline)), "{what}");
+            assert_eq!([goes_around(&outline), goes_around(&reversed(&outline))], [None, None], "{what}");
         }
     }
 
@@ -180,7 +193,7 @@ mod tests {
             for corner in &mut outline {
                 *corner = (corner.0 + below(size) / 3, corner.1 + below(size) / 3);
             }
-            if goes_around(&outline) {
+            if goes_around(&outline).is_some() {
                 found[0] += 1;
                 assert!(!meets_itself(&outline), "{outline:?}");
             } else {
