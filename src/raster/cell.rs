@@ -26,6 +26,8 @@ pub(crate) struct Accumulator {
     occupied: Vec<Vec<u64>>,
     /// How many columns a strip has.
     stride: usize,
+    /// The strip that has number 0 for those who add to the cells.
+    base: usize,
     /// Sums of more edges than `columns` can hold; empty but while a crowd of edges is added.
     wide: Vec<[i64; BLOCK_HEIGHT]>,
 }
@@ -50,7 +52,13 @@ impl Accumulator {
         }
     }
 
-    /// Whether some block of strip `index` is occupied.
+    /// Numbers strips from `base` on for all that adds to the cells, until it is 0 again: edges of a shape that lies in a few of the strips
+    /// need not ask about the others.
+    pub(crate) fn set_base(&mut self, base: usize) {
+        self.base = base;
+    }
+
+    /// Whether some block of strip `index`, of all, is occupied.
     pub(crate) fn is_occupied(&self, index: usize) -> bool {
         self.occupied.get(index).is_some_and(|words| words.iter().any(|word| *word != 0))
     }
@@ -104,10 +112,10 @@ impl Accumulator {
         column < self.stride && self.columns.len() <= i32::MAX as usize / BLOCK_HEIGHT
     }
 
-    /// All values: the eight rows of a column, column after column, strip after strip.
+    /// All values from the base on: the eight rows of a column, column after column, strip after strip.
     #[inline(always)]
     pub(super) fn cells(&mut self) -> &mut [i32] {
-        bytemuck::cast_slice_mut(&mut self.columns)
+        bytemuck::cast_slice_mut(self.columns.get_mut(self.base * self.stride..).unwrap_or(&mut []))
     }
 
     /// Marks the blocks that hold columns `first ..= last` of a strip as occupied, if the band has it.
@@ -119,7 +127,9 @@ impl Accumulator {
             if let Some(mut strip) = self.strip(index) {
                 strip.occupy(first, last);
             }
-        } else if let Some(word) = self.occupied.get_mut(index).and_then(|words| words.get_mut(first_block / 64)) {
+        } else if let Some(word) =
+            self.occupied.get_mut(self.base + index).and_then(|words| words.get_mut(first_block / 64))
+        {
             *word |= (u64::MAX << (first_block % 64)) & (u64::MAX >> (63 - last_block % 64));
         }
     }
@@ -127,6 +137,7 @@ impl Accumulator {
     /// The accumulators of strip `index` and the next.
     #[inline(always)]
     pub(super) fn pair(&mut self, index: usize) -> Option<[Strip<'_>; 2]> {
+        let index = self.base.wrapping_add(index);
         let columns = self.columns.get_mut(index.wrapping_mul(self.stride)..)?;
         let (above, rest) = columns.split_at_mut_checked(self.stride)?;
         let below = rest.get_mut(..self.stride)?;
@@ -137,6 +148,7 @@ impl Accumulator {
     /// The accumulator of strip `index`, or `None` past the last.
     #[inline(always)]
     pub(crate) fn strip(&mut self, index: usize) -> Option<Strip<'_>> {
+        let index = self.base.wrapping_add(index);
         let occupied = self.occupied.get_mut(index)?;
         let columns = self.columns.get_mut(index.wrapping_mul(self.stride)..)?.get_mut(..self.stride)?;
         Some(Strip { columns, occupied })

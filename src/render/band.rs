@@ -285,13 +285,13 @@ fn paint_draw_inner<S: Simd>(
     let coverage = if stretches.is_empty() {
         accumulate(simd, frame, scratch, &draw.geometry, draw.antialias, draw.bounds, boundary)
     } else {
-        accumulate_stretches(simd, frame, scratch, stretches)
+        accumulate_stretches(simd, frame, scratch, draw.bounds, stretches)
     };
     let BandScratch { cells, layers, clips, occlusion, visible, .. } = scratch;
     let surface = &mut open_surface(frame, target, layers);
     let clip = clips.current(draw.clip);
     let look = Look::new(draw, paint, clip);
-    paint_coverage(simd, frame, cells, coverage, look, surface, (occlusion, visible));
+    paint_coverage(simd, frame, cells, (coverage, draw.bounds), look, surface, (occlusion, visible));
 }
 
 /// Draws a finished layer onto the one below, or onto the target.
@@ -329,5 +329,5 @@ fn paint_layer_inner<S: Simd>(
     let source = Source::Layer(pixels.surface(frame.rows));
     let clip = clips.current(layer.clip);
     let look = Look { source, blend_mode: layer.blend_mode, opacity: layer.opacity, clip };
-    paint_coverage(simd, frame, cells, coverage, look, surface, (occlusion, visible));
+    paint_coverage(simd, frame, cells, (coverage, layer.bounds), look, surface, (occlusion, visible));
 }

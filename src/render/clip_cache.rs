@@ -98,7 +98,7 @@ fn build_clip_inner<S: Simd>(simd: S, frame: &Frame<'_>, scratch: &mut BandScrat
                     .unwrap_or_default();
                 let coverage = accumulate(simd, frame, scratch, geometry, *antialias, node.bounds, boundary);
                 let parent = scratch.clips.chain.last().map(|(_, mask)| mask);
-                for strip in 0..frame.strips {
+                for strip in frame.strips_of(node.bounds) {
                     if !coverage.is_empty(frame, &scratch.cells, strip) {
                         let mut sink = ClipSink { mask: &mut mask, strip, parent };
                         coverage.sweep(simd, frame, &mut scratch.cells, strip, frame.blocks, &mut sink);

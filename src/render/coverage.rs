@@ -1,5 +1,7 @@
 //! Which pixels: a shape's edges into cells, and cells into blocks of coverage.
 
+use core::ops::Range;
+
 use fearless_simd::Simd;
 
 use super::Piece;
@@ -14,6 +16,7 @@ use crate::raster::batch::add_edges;
 use crate::raster::bins::{Boundary, Edges};
 use crate::raster::cell::Accumulator;
 use crate::raster::edge::Edge;
+use crate::raster::kernel::Reach;
 use crate::raster::rect::sweep_rect;
 use crate::raster::round_rect::add_round_rect;
 use crate::raster::sweep::{BlockSink, CoverageRule, sweep};
@@ -114,42 +117,55 @@ fn accumulate_inner<S: Simd>(
         _ => FillRule::NonZero,
     };
     if let Geometry::Spans(range) = geometry {
-        add_spans(frame, &mut scratch.cells, frame.list.spans.get(range.0 as usize..range.1 as usize).unwrap_or(&[]));
+        add_spans(
+            frame,
+            &mut scratch.cells,
+            bounds,
+            frame.list.spans.get(range.0 as usize..range.1 as usize).unwrap_or(&[]),
+        );
         return Coverage::Cells(CoverageRule::NonZero);
     }
     if let Some(rect) = rectangle(frame, geometry, antialias, bounds) {
         return Coverage::Rect(rect);
     }
-    let top = frame.top << fixed::SHIFT;
+    let strips = frame.strips_of(bounds);
+    let top = frame.strip_top(strips.start);
     let BandScratch { cells, reaches, visible, .. } = scratch;
-    reaches.clear();
-    reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
+    set_reaches(reaches, visible, &strips);
     let edges = match boundary {
         Boundary::Edges(edges) => edges,
         Boundary::RoundRect(shape) => {
-            add_round_rect(simd, cells, &shape, bounds.intersect(frame.area()), top, frame.strips, reaches);
+            cells.set_base(strips.start);
+            let top = top << fixed::SHIFT;
+            add_round_rect(simd, cells, &shape, bounds.intersect(frame.area()), top, strips.len(), reaches);
+            cells.set_base(0);
             return Coverage::Cells(CoverageRule::NonZero);
         }
         Boundary::Bar(bar) => {
-            add_bar(simd, cells, bar, bounds.intersect(frame.area()), frame.top, reaches);
+            cells.set_base(strips.start);
+            add_bar(simd, cells, bar, bounds.intersect(frame.area()), top, reaches);
+            cells.set_base(0);
             return Coverage::Cells(CoverageRule::NonZero);
         }
     };
     let grid = match antialias {
         Antialias::Analytic | Antialias::Exact => {
             // Sums by the even-odd rule may wrap around: what is lost is even.
+            let top = top << fixed::SHIFT;
+            cells.set_base(strips.start);
             if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
-                kernel::add_crowds(simd, cells, &mut std::iter::once(edges), top, frame.strips, reaches);
+                kernel::add_crowds(simd, cells, &mut std::iter::once(edges), top, strips.len(), reaches);
             } else {
-                add_edges(simd, cells, edges, top, frame.strips, reaches);
+                add_edges(simd, cells, edges, top, strips.len(), reaches);
             }
+            cells.set_base(0);
             return Coverage::Cells(rule.into());
         }
         Antialias::Supersample(grid) => grid.clamp(1, 16),
         Antialias::None => 1,
     };
     let edges = &*listed(&mut scratch.edges, edges);
-    for strip in 0..frame.strips {
+    for strip in strips {
         if let Some(mut cells) = scratch.cells.strip(strip) {
             let strip_top = frame.strip_top(strip) << fixed::SHIFT;
             sample::add_samples(&mut cells, edges, strip_top, grid, rule, &mut scratch.sample);
@@ -164,11 +180,12 @@ pub(super) fn accumulate_stretches<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     scratch: &mut BandScratch,
+    bounds: IntRect,
     stretches: &[Piece<'_>],
 ) -> Coverage {
+    let strips = frame.strips_of(bounds);
     let BandScratch { cells, reaches, visible, .. } = scratch;
-    reaches.clear();
-    reaches.extend(visible.iter().map(|blocks| reach(*blocks)));
+    set_reaches(reaches, visible, &strips);
     let mut edges = stretches.iter().filter_map(|stretch| {
         let band = stretch.chunk.band(frame.index)?;
         match stretch.chunk.boundary(band, *band.items.first()?) {
@@ -176,8 +193,17 @@ pub(super) fn accumulate_stretches<S: Simd>(
             Boundary::RoundRect(_) | Boundary::Bar(_) => None,
         }
     });
-    kernel::add_crowds(simd, cells, &mut edges, frame.top << fixed::SHIFT, frame.strips, reaches);
+    cells.set_base(strips.start);
+    kernel::add_crowds(simd, cells, &mut edges, frame.strip_top(strips.start) << fixed::SHIFT, strips.len(), reaches);
+    cells.set_base(0);
     Coverage::Cells(CoverageRule::NonZero)
+}
+
+/// Sets where in each of a shape's strips coverage matters.
+#[inline(always)]
+fn set_reaches(reaches: &mut Vec<Reach>, visible: &[(usize, usize)], strips: &Range<usize>) {
+    reaches.clear();
+    reaches.extend(visible.get(strips.clone()).unwrap_or(&[]).iter().map(|blocks| reach(*blocks)));
 }
 
 /// Edges side by side, for steps that look at them more than once.
@@ -187,10 +213,11 @@ fn listed<'a>(list: &'a mut Vec<Edge>, edges: Edges<'_>) -> &'a mut Vec<Edge> {
     list
 }
 
-/// Adds the whole pixels of `spans` (in order of rows) that lie in this band.
-fn add_spans(frame: &Frame<'_>, cells: &mut Accumulator, spans: &[Span]) {
-    let first = spans.partition_point(|span| span.y < frame.top);
-    let end = spans.partition_point(|span| span.y < frame.top + frame.rows as i32);
+/// Adds the whole pixels of `spans` (in order of rows) that lie in rows of this band and of `bounds`.
+fn add_spans(frame: &Frame<'_>, cells: &mut Accumulator, bounds: IntRect, spans: &[Span]) {
+    let IntRect { top, bottom, .. } = bounds.intersect(frame.area());
+    let first = spans.partition_point(|span| span.y < top);
+    let end = spans.partition_point(|span| span.y < bottom);
     for span in spans.get(first..end).unwrap_or(&[]) {
         let row = (span.y - frame.top) as usize;
         let Some(mut strip) = cells.strip(row / BLOCK_HEIGHT) else { continue };

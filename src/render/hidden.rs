@@ -103,7 +103,7 @@ fn claim_blocks<S: Simd>(
         #[inline(always)]
         || {
             let BandScratch { cells, occlusion, visible, kept, .. } = scratch;
-            for strip in 0..frame.strips {
+            for strip in frame.strips_of(draw.bounds) {
                 if !coverage.is_empty(frame, cells, strip) {
                     let rows = frame.rows.saturating_sub(strip * BLOCK_HEIGHT).min(BLOCK_HEIGHT);
                     let end = visible.get(strip).map_or(frame.blocks, |(_, end)| *end);

@@ -13,7 +13,7 @@ use crate::blend::{
     over_solid_row, scale_mask_row, scale_mask_row_by,
 };
 use crate::display_list::Draw;
-use crate::geom::FixedRect;
+use crate::geom::{FixedRect, IntRect};
 use crate::num::fixed;
 use crate::paint::{PreparedPaint, fetch_block};
 use crate::raster::cell::Accumulator;
@@ -42,20 +42,20 @@ pub(super) struct Look<'a> {
     pub(super) clip: Option<&'a BandMask>,
 }
 
-/// Draws a shape's coverage onto a surface; `cells` hold it, or it is a rectangle's.
+/// Draws the coverage of a shape in `bounds` (device pixels) onto a surface; `cells` hold it, or it is a rectangle's.
 #[inline(never)]
 pub(super) fn paint_coverage<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     cells: &mut Accumulator,
-    coverage: Coverage,
+    (coverage, bounds): (Coverage, IntRect),
     look: Look<'_>,
     surface: &mut Surface<'_>,
     seen: (&Occlusion, &[(usize, usize)]),
 ) {
     simd.vectorize(
         #[inline(always)]
-        || paint_coverage_inner(simd, frame, cells, coverage, look, surface, seen),
+        || paint_coverage_inner(simd, frame, cells, (coverage, bounds), look, surface, seen),
     )
 }
 
@@ -64,13 +64,13 @@ fn paint_coverage_inner<S: Simd>(
     simd: S,
     frame: &Frame<'_>,
     cells: &mut Accumulator,
-    coverage: Coverage,
+    (coverage, bounds): (Coverage, IntRect),
     mut look: Look<'_>,
     surface: &mut Surface<'_>,
     (occlusion, visible): (&Occlusion, &[(usize, usize)]),
 ) {
     let pattern = &look.pattern();
-    for strip in 0..frame.strips {
+    for strip in frame.strips_of(bounds) {
         if coverage.is_empty(frame, cells, strip) {
             continue;
         }
