@@ -40,10 +40,11 @@ struct Node {
     ordered: u8,
 }
 
-const RIGHT: u8 = 1;
-const LEFT: u8 = 2;
-const DOWN: u8 = 4;
-const UP: u8 = 8;
+// In the order of a box's sides at which what goes such a way ends.
+const LEFT: u8 = 1;
+const UP: u8 = 2;
+const RIGHT: u8 = 4;
+const DOWN: u8 = 8;
 
 /// Two nodes of a level above the lowest, or one twice, that are still to be compared.
 #[derive(Clone, Copy, Debug)]
@@ -168,7 +169,7 @@ impl Boxes {
 
     /// Builds the levels above the edges, where there are more than [`FEW`] nodes around those.
     #[inline(always)]
-    pub(super) fn build(&mut self) {
+    pub(super) fn build<S: Simd>(&mut self, simd: S) {
         let Self { edges, used, levels, height, .. } = self;
         *height = 1;
         let mut count = *used;
@@ -180,7 +181,7 @@ impl Boxes {
             let (below, are_edges) =
                 below.last().map_or_else(|| (edges.get(..*used).unwrap_or(&[]), true), |below| (below, false));
             for (first, nodes) in (0..).step_by(8).zip(below.chunks(8)) {
-                level.push(Node::of_nodes(nodes, first, are_edges));
+                level.push(Node::of_nodes(simd, nodes, first, are_edges));
             }
             (count, *height) = (level.len(), *height + 1);
         }
@@ -225,7 +226,9 @@ impl Boxes {
                     near &= near - 1;
                     if level > 1 {
                         pairs.push(Pair { level: lower, one, other });
-                    } else if let (Some(own), Some(others)) = (below.get(one as usize), below.get(other as usize)) {
+                    } else if let (Some(own), Some(others)) = (below.get(one as usize), below.get(other as usize))
+                        && !own.is_star_of(others)
+                    {
                         match own.for_pairs(simd, others, &mut meet) {
                             Some(more) => used += more,
                             None => return false,
@@ -409,36 +412,40 @@ impl Node {
 
     /// At most eight nodes, of which the first is number `first`, and whether they are those of edges.
     #[inline(always)]
-    fn of_nodes(nodes: &[Self], first: u32, are_edges: bool) -> Self {
+    fn of_nodes<S: Simd>(simd: S, nodes: &[Self], first: u32, are_edges: bool) -> Self {
         let outline = nodes.first().map_or([0; 2], |node| node.outline);
         let mut node = Self { first, outline, ..Self::EMPTY };
-        let Self { left, top, right, bottom, around, ordered, .. } = &mut node;
+        let Self { left, top, right, bottom, .. } = &mut node;
+        let (mut around, mut before) = (i32x4::splat(simd, NOWHERE), None);
+        let (mut ordered, mut ways, mut is_one_outline) = (0, LEFT | UP | RIGHT | DOWN, true);
         let sides = left.iter_mut().zip(top).zip(right.iter_mut().zip(bottom));
         for ((lane, child), ((left, top), (right, bottom))) in nodes.iter().enumerate().zip(sides) {
-            *ordered |= u8::from(child.is_ordered) << lane;
+            let own = i32x4::load_array_ref(simd, &child.around.0);
+            if let Some(before) = before {
+                ways &= i32x4::simd_eq(before, !child.around.turned(simd)).to_bitmask() as u8;
+            }
+            (around, before) = (min_i32(around, own), Some(own));
+            ordered |= u8::from(child.is_ordered) << lane;
+            is_one_outline &= child.outline == outline;
             [*left, *top, *right, *bottom] = child.around.0;
-            *around = around.with(child.around);
         }
-        if !nodes.iter().all(|child| child.outline == outline) {
-            return node;
-        }
-        if nodes.first().is_some_and(|child| child.is_star) {
-            (node.is_star, node.is_ordered) = (true, true);
-        } else {
-            node.ways = node.ways_of_lanes();
-            // Few get here.
-            if is_one_way(node.ways) {
-                let own = |child: &Self| if are_edges { child.ways_of_lanes() } else { child.ways };
-                node.ways = nodes.iter().fold(node.ways, |ways, child| ways & own(child));
+        (node.around, node.ordered) = (Bounds(around.to_array()), ordered);
+        if is_one_outline {
+            if nodes.first().is_some_and(|child| child.is_star) {
+                (node.is_star, node.is_ordered) = (true, true);
+            } else if is_one_way(ways) {
+                // Few get here.
+                let own = |child: &Self| if are_edges { child.ways_of_edges() } else { child.ways };
+                node.ways = nodes.iter().fold(ways, |ways, child| ways & own(child));
                 node.is_ordered = is_one_way(node.ways);
             }
         }
         node
     }
 
-    /// The ways that its boxes follow each other, if what they hold does: each ends where the next begins.
+    /// The ways that edges follow each other: each one's box ends where the next begins.
     #[inline(always)]
-    fn ways_of_lanes(&self) -> u8 {
+    fn ways_of_edges(&self) -> u8 {
         let Self { left, top, right, bottom, .. } = self;
         let count = left.iter().take_while(|left| **left != NOWHERE).count();
         let follow = |ends: &[i32; 8], starts: &[i32; 8], way: u8| {
@@ -458,9 +465,6 @@ impl Node {
         others: &Self,
         meet: &mut impl FnMut(Numbers, Numbers) -> bool,
     ) -> Option<usize> {
-        if self.is_star_of(others) {
-            return Some(1);
-        }
         let is_same = self.first == others.first;
         let follows = others.first == self.first + 8 && self.outline == others.outline;
         let mut lanes = if is_same { self.near_own(simd) } else { self.near(simd, others.around) };
@@ -667,7 +671,7 @@ mod tests {
             let (around, _) = dispatch!(level, simd => boxes.add(simd, &padded(&corners[first..]), corners.len() - first - 1, first as u32)).unwrap();
             edges.push(((first..=last).map(|index| [number(index), number(next(index))]).collect(), around));
         }
-        boxes.build();
+        dispatch!(level, simd => boxes.build(simd));
         (corners, edges, boxes)
     }
 
@@ -789,7 +793,7 @@ mod tests {
                 dispatch!(SimdLevel::best(), simd => boxes.add(simd, &padded(&corners), corners.len() - 1, 0))
                     .is_some()
             );
-            boxes.build();
+            dispatch!(SimdLevel::best(), simd => boxes.build(simd));
             let is_ordered: Vec<_> = boxes.levels[0].iter().map(|node| node.is_ordered).collect();
             assert_eq!(is_ordered, [is_straight, true, true, true, false], "round {round}");
             assert!(!boxes.levels[1][0].is_ordered);

@@ -197,7 +197,7 @@ impl Resolver {
             let (last, nodes) = (first + count as u32 - 1, [node, boxes.len()]);
             outlines.push(Outline { first, last, nodes, around, way, crosses: false, start: first, left: 0 });
         }
-        boxes.build();
+        boxes.build(simd);
     }
 
     /// Finds where edges cross; false where that takes too long.
