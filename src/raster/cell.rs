@@ -199,3 +199,29 @@ impl Strip<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_are_numbered_from_the_base() {
+        let mut cells = Accumulator::default();
+        cells.resize(60, 4);
+        cells.set_base(2);
+        cells.strip(1).unwrap().columns[5].0[3] = 7;
+        cells.occupy(1, 5, 20);
+        cells.occupy(2, 5, 20);
+        let stride = cells.stride();
+        assert_eq!(cells.cells()[(stride + 5) * BLOCK_HEIGHT + 3], 7);
+        assert_eq!(cells.cells().len(), 2 * stride * BLOCK_HEIGHT);
+        assert_eq!(cells.pair(0).unwrap()[1].columns[5].0[3], 7);
+        assert!(cells.pair(1).is_none() && cells.strip(2).is_none());
+        cells.set_base(0);
+        assert_eq!(cells.strip(3).unwrap().columns[5].0[3], 7);
+        assert_eq!(
+            (0..5).map(|strip| cells.is_occupied(strip)).collect::<Vec<_>>(),
+            [false, false, false, true, false]
+        );
+    }
+}

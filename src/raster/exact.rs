@@ -6,7 +6,8 @@
 //!
 //! Edges that may meet are found by their boxes ([`boxes`](super::boxes)); which of them cross, by the sides on which corners lie
 //! ([`orientation`](super::orientation), where ties are broken). How often outlines wind left of an edge is counted once for each
-//! outline, at its leftmost corner; along the outline it changes by one at each crossing. What is kept are parts of outlines, in their order.
+//! outline, at its leftmost corner, or at its first where it turns one way and crosses nothing; along the outline it changes by one at each crossing.
+//! What is kept are parts of outlines, in their order.
 //!
 //! Crossings are rounded to 1/256 pixel, as corners are; exactly, so that where three edges cross in one point all agree on it. Along an edge
 //! they are put in order exactly as well. Kept pieces thus always close: what rounding may change is some 2^-17 of a pixel, never a row.

@@ -129,40 +129,38 @@ fn accumulate_inner<S: Simd>(
         return Coverage::Rect(rect);
     }
     let strips = frame.strips_of(bounds);
-    let top = frame.strip_top(strips.start);
     let BandScratch { cells, reaches, visible, .. } = scratch;
     set_reaches(reaches, visible, &strips);
-    let edges = match boundary {
-        Boundary::Edges(edges) => edges,
+    let (area, top) = (bounds.intersect(frame.area()), frame.strip_top(strips.start));
+    cells.set_base(strips.start);
+    let added = match boundary {
         Boundary::RoundRect(shape) => {
-            cells.set_base(strips.start);
-            let top = top << fixed::SHIFT;
-            add_round_rect(simd, cells, &shape, bounds.intersect(frame.area()), top, strips.len(), reaches);
-            cells.set_base(0);
-            return Coverage::Cells(CoverageRule::NonZero);
+            add_round_rect(simd, cells, &shape, area, top << fixed::SHIFT, strips.len(), reaches);
+            Ok(CoverageRule::NonZero)
         }
         Boundary::Bar(bar) => {
-            cells.set_base(strips.start);
-            add_bar(simd, cells, bar, bounds.intersect(frame.area()), top, reaches);
-            cells.set_base(0);
-            return Coverage::Cells(CoverageRule::NonZero);
+            add_bar(simd, cells, bar, area, top, reaches);
+            Ok(CoverageRule::NonZero)
         }
-    };
-    let grid = match antialias {
-        Antialias::Analytic | Antialias::Exact => {
+        Boundary::Edges(edges) => match antialias {
             // Sums by the even-odd rule may wrap around: what is lost is even.
-            let top = top << fixed::SHIFT;
-            cells.set_base(strips.start);
-            if edges.len() >= kernel::CROWD && rule == FillRule::NonZero {
-                kernel::add_crowds(simd, cells, &mut std::iter::once(edges), top, strips.len(), reaches);
-            } else {
-                add_edges(simd, cells, edges, top, strips.len(), reaches);
+            Antialias::Analytic | Antialias::Exact if edges.len() >= kernel::CROWD && rule == FillRule::NonZero => {
+                let mut edges = std::iter::once(edges);
+                kernel::add_crowds(simd, cells, &mut edges, top << fixed::SHIFT, strips.len(), reaches);
+                Ok(rule.into())
             }
-            cells.set_base(0);
-            return Coverage::Cells(rule.into());
-        }
-        Antialias::Supersample(grid) => grid.clamp(1, 16),
-        Antialias::None => 1,
+            Antialias::Analytic | Antialias::Exact => {
+                add_edges(simd, cells, edges, top << fixed::SHIFT, strips.len(), reaches);
+                Ok(rule.into())
+            }
+            Antialias::Supersample(grid) => Err((edges, grid.clamp(1, 16))),
+            Antialias::None => Err((edges, 1)),
+        },
+    };
+    cells.set_base(0);
+    let (edges, grid) = match added {
+        Ok(rule) => return Coverage::Cells(rule),
+        Err(sampled) => sampled,
     };
     let edges = &*listed(&mut scratch.edges, edges);
     for strip in strips {
